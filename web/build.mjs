@@ -51,6 +51,7 @@ const { metafile } = await build({
     compare: "src/compare/compare.css",
     inside: "src/inside/inside.css",
     open: "src/open/open.css",
+    show: "src/show/show.css",
   },
   outdir: "dist",
   splitting: true, // what an import() names is loaded when it is used

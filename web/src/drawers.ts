@@ -2,7 +2,7 @@
 import { CompareDoor } from "./compare/door";
 import { LabDoor } from "./lab/door";
 import type { SceneStore } from "./link/scene_store";
-import type { SceneDocument } from "./link/scene_types";
+import type { Patch, SceneDocument } from "./link/scene_types";
 import { showApplied } from "./panel/notices";
 import { TextDoor } from "./text/door";
 import type { Stage } from "./view/stage";
@@ -16,6 +16,7 @@ export interface DrawersHost {
   preset(name: string): SceneDocument | null; ///< with the defaults filled in, as the server keeps it
   stage(): Stage;
   mayEdit(): boolean;
+  fail(patch: Patch, what: string): void; ///< shows how the scene fails with that
   undo(revision: number): void; ///< undoes the change that made this revision, if it was the last
   toggled(open: boolean): void; ///< the free part of the window changes
   returned(): void; ///< the session's cloth is drawn again
@@ -41,6 +42,7 @@ export class Drawers {
       addressed: (patch) => (Array.isArray(patch) ? store.addressed(patch) : patch),
       undo: (revision) => host.undo(revision),
       compare: (patch) => this.compare.begin({ patch }),
+      fail: (patch, what) => host.fail(patch, what),
       toggled: (open) => this.toggled(this.lab, open),
     });
     this.compare = new CompareDoor({
@@ -68,6 +70,11 @@ export class Drawers {
   /// True while a comparison is drawn in the place of the session's cloth.
   get compared(): boolean {
     return this.compare.drawn;
+  }
+
+  /// Closes what is open: the picture needs the room.
+  shut(): void {
+    for (const each of [this.lab, this.compare, this.text]) each.shut();
   }
 
   toggle(which: "lab" | "compare" | "text"): void {

@@ -8,7 +8,7 @@ import type { Convergence } from "./panel/convergence_gauge";
 import { button, element } from "./panel/dom";
 import type { SolverFacts } from "./panel/field";
 import { Divergence } from "./panel/divergence";
-import { beyond, type Stability } from "./panel/gauge";
+import type { Stability } from "./panel/gauge";
 import { Hud, type Status } from "./panel/hud";
 import { Refusals } from "./panel/refusals";
 import { Newcomer } from "./panel/newcomer";
@@ -33,6 +33,8 @@ import { SceneStore } from "./link/scene_store";
 import { coarser, masses, withPlaces } from "./link/grid_places";
 import { sessionFault } from "./link/session_name";
 import { Picture } from "./picture";
+import { ShowDoor } from "./show/door";
+import { Provoked } from "./show/provoked";
 import type { MovedCollider, Operation, Patch, SceneDocument } from "./link/scene_types";
 import type { HandAt } from "./view/grab";
 import { Hand } from "./view/hand";
@@ -45,7 +47,6 @@ import { bindTimeline } from "./panel/timeline_opener";
 import { ThemeSwitch } from "./view/theme";
 import { Transport } from "./panel/transport";
 import { type History, Undo } from "./panel/undo";
-import { timeStep } from "./panel/solver_section";
 
 type Params = Record<string, unknown>;
 
@@ -114,10 +115,33 @@ export class Page {
     request: (method, params) => this.connection.request(method, params),
     get: (path) => this.connection.get(path),
   });
-  private readonly divergence = new Divergence(
-    (patch) => this.connection.request("scene.patch", { patch, name: "Remedy" }),
-    () => this.newcomer?.did("mend"),
-  );
+  private readonly divergence = new Divergence({
+    send: (patch) => this.connection.request("scene.patch", { patch, name: "Remedy" }),
+    shown: () => this.blowUp.on,
+    mayShow: () => this.mayEdit && this.connection.open,
+    show: () => this.provoked.again(),
+    mended: () => this.newcomer?.did("mend"),
+  });
+  private readonly blowUp = new ShowDoor({
+    request: (method, params) => this.connection.request(method, params ?? {}),
+    picture: this.picture,
+    remedy: ({ remedy }) => this.connection.request("scene.patch", { patch: remedy?.patch ?? {}, name: "Remedy" }),
+    play: () => {
+      this.newcomer?.did("mend");
+      this.transport.start();
+    },
+    opened: () => this.drawers.shut(),
+    changed: () => this.layout?.cardToggled(),
+    ended: (diverged) => {
+      if (diverged) this.divergence.tell(diverged);
+    },
+  });
+  private readonly provoked = new Provoked({
+    begin: (cause) => this.blowUp.begin(cause),
+    request: (method, params) => this.connection.request(method, params),
+    stored: () => this.store.stored,
+    limit: () => this.stability?.dt_limit,
+  });
   private readonly refusals = new Refusals({
     show: (crossings) => this.stage.showCrossings(crossings),
     hide: () => this.stage.hideCrossings(),
@@ -204,7 +228,7 @@ export class Page {
     this.newcomer = new Newcomer(
       {
         mayEdit: () => this.mayEdit,
-        blowUp: () => this.blowUp(),
+        blowUp: () => this.provoked.beyondLimit(),
         lab,
         load: (name) => this.loadPreset(name),
         gallery: () => this.presets.openGallery(),
@@ -221,14 +245,6 @@ export class Page {
   private async share(): Promise<void> {
     const { openShare } = await import("./panel/share");
     if (this.store.stored) await openShare(this.store.stored);
-  }
-
-  // Steps beyond the limit, if the method has one; else the preset that does so.
-  private blowUp(): void {
-    const dt = beyond(this.stability);
-    if (dt) this.store.edit([{ op: "replace", path: timeStep, value: dt }]);
-    else this.request("scene.load", { preset: "blowup" });
-    if (!this.transport.playing) this.transport.toggle();
   }
 
   private makePicture(): Picture {
@@ -261,6 +277,7 @@ export class Page {
         if (state !== "open") {
           this.hand?.lost();
           this.store.forget();
+          this.blowUp.lost();
           this.guide.baseline.lost();
         }
         if (state === "open" && !this.store.document) void this.fetchScene();
@@ -275,6 +292,7 @@ export class Page {
         this.lastSecond.frames++;
         this.slow.picture();
         this.picture.take(frame, field);
+        this.blowUp.frame(frame);
       },
       latency: (milliseconds) => {
         this.lastSecond.latency = milliseconds;
@@ -378,6 +396,7 @@ export class Page {
       stage: () => this.stage,
       mayEdit: () => this.mayEdit,
       undo: (revision) => void this.undo.go("undo", revision),
+      fail: (patch, what) => this.provoked.setting(patch, what),
       toggled: (open) => this.layout?.labToggled(open),
       returned: () => this.picture.again(),
     });
@@ -428,9 +447,13 @@ export class Page {
         this.numbers.told(params.renumbered as Renumbered | undefined);
         this.hand?.told((params.hands as HandAt[] | undefined) ?? []);
         this.recording.told((params as Status).recording);
+        this.blowUp.status(params as Status);
         this.divergence.follow(params as Status);
       },
-      "sim.diverged": (params) => this.divergence.tell(params as unknown as Diverged),
+      "sim.diverged": (params) => {
+        if (this.blowUp.on) this.blowUp.diverged(params as unknown as Diverged);
+        else this.divergence.tell(params as unknown as Diverged);
+      },
       "lab.progress": (params) => this.drawers.told("progress", params),
       "lab.result": (params) => this.drawers.told("result", params),
       viewers: (params) => {
@@ -461,6 +484,10 @@ export class Page {
 
   private loadPreset(name: string): void {
     this.sceneName = "";
+    if (name === Provoked.preset) {
+      this.provoked.load();
+      return;
+    }
     this.connection.request("scene.load", { preset: name }).then(
       () => this.transport.start(), // who chooses a scene wants to see it move
       (error: Error) => this.refusals.tell("The server refused this", error),

@@ -21,6 +21,7 @@ export interface LabEvents {
   mayEdit(): boolean;
   applied(depth: string): void;
   compare(patch: Patch): void;
+  fail(patch: Patch, what: string): void; ///< shows how the scene blows up with that
   toggled(open: boolean): void; ///< changes the free part of the window
 }
 
@@ -38,6 +39,8 @@ export class Lab {
     jobs: this.jobs,
     apply: (patch, what) => void this.apply(patch, what),
     compare: (patch) => this.events.compare(patch),
+    fail: (patch, what) =>
+      this.events.fail(this.events.addressed(patch), `Lab: ${what}`.replace(/[^ -~]/g, "").slice(0, 80)),
     problem: (title, error) => noticeError(title, error),
     mayEdit: () => this.events.mayEdit(),
     document: () => this.events.document(),

@@ -75,7 +75,7 @@ export class StabilityTab extends Tab<"stability"> {
     "stability",
     this.host.jobs,
     this.picture,
-    "Stability map: arrow keys go from trial to trial, Enter applies one",
+    "Stability map: arrow keys go from trial to trial, Enter applies one, or shows how it fails",
     (error) => this.host.problem("The map could not be drawn", error),
   );
   private readonly tableTitle = make("summary");
@@ -237,7 +237,7 @@ export class StabilityTab extends Tab<"stability"> {
         `theory's limit: ${limit(column.theory_s)}`,
         ...(column.disagrees ? [`measured and theory disagree: ${column.reason}`] : []),
       ],
-      action: this.host.mayEdit() && this.operations(found) ? "Apply" : null,
+      action: this.host.mayEdit() && this.operations(found) ? (cell.blew_up ? "Show how it fails" : "Apply") : null,
     };
   }
 
@@ -268,10 +268,9 @@ export class StabilityTab extends Tab<"stability"> {
   private applyCell(key: string): void {
     const found = this.found(key);
     const operations = found && this.operations(found);
-    if (found && operations)
-      this.host.apply(
-        operations,
-        `${methodText(found.method).name}, dt ${stepText(found.cell.dt_s)}, ${this.valueText(found.column.value)}`,
-      );
+    if (!found || !operations) return;
+    const what = `${methodText(found.method).name}, dt ${stepText(found.cell.dt_s)}, ${this.valueText(found.column.value)}`;
+    if (found.cell.blew_up) this.host.fail(operations, what);
+    else this.host.apply(operations, what);
   }
 }

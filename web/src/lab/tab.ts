@@ -10,6 +10,7 @@ import type { Patch, SceneDocument } from "../link/scene_types";
 export interface TabHost {
   jobs: Jobs;
   apply(patch: Patch, what: string): void;
+  fail(patch: Patch, what: string): void; ///< shows how the scene blows up with that
   compare(patch: Patch): void; ///< the present settings with these
   problem(title: string, error: Error): void;
   mayEdit(): boolean;

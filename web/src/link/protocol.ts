@@ -14,6 +14,8 @@ const flagDiverged = 2;
 
 /// What stream.subscribe may ask for beside the vertices: a number at each of them.
 export type FieldName = "strain" | "speed" | "contact";
+/// What the cloth may be coloured by: besides these the growing mode of a blow-up, which the page finds itself.
+export type ShownField = FieldName | "growth";
 
 export interface Header {
   kind: number;
@@ -37,7 +39,7 @@ export interface Frame {
 }
 /// A frame with the field that it has, and the colliders' places, which the server sends just before it.
 export interface ShownFrame extends Frame {
-  field: FieldName | null;
+  field: ShownField | null;
   moved: MovedCollider[];
 }
 

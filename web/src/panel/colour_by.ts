@@ -3,7 +3,7 @@ import { element } from "./dom";
 import { fields, gradient, isField } from "../view/fields";
 import { fixedRange } from "../view/field_ranges";
 import { inBrowser } from "../link/kept";
-import type { FieldName } from "../link/protocol";
+import type { FieldName, ShownField } from "../link/protocol";
 
 const key = "clothlab-colour-by";
 
@@ -11,7 +11,7 @@ export class ColourBy {
   private readonly choice = element("colour-by", HTMLSelectElement);
   private readonly legend = element("legend", HTMLElement);
   private readonly most = element("legend-most", HTMLElement);
-  private shown: FieldName | null = null;
+  private shown: ShownField | null = null;
 
   /// `chosen` gets the choice at once, then every other one; `resized` is called when the legend comes or goes.
   constructor(
@@ -32,7 +32,7 @@ export class ColourBy {
   }
 
   /// Says what the colours of the frame on screen mean.
-  show(field: FieldName | null, range: number): void {
+  show(field: ShownField | null, range: number): void {
     const fixed = field ? fixedRange(field) : undefined;
     const text = field ? `${fixed ? "≥ " : ""}${fields[field].most(fixed ?? range)}` : "";
     if (this.most.textContent !== text) this.most.textContent = text;

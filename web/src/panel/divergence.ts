@@ -1,17 +1,23 @@
-// The notice of a simulation that has blown up: comes and goes with the server's status.
+// The notice of a simulation that has blown up: comes and goes with the server's status. While the show of it is on,
+// that tells it.
 import { saferStep } from "./gauge";
 import type { Status } from "./hud";
 import { clearDiverged, showDiverged, type Diverged } from "./notices";
 import type { Patch } from "../link/scene_types";
 
+export interface DivergenceHost {
+  send(patch: Patch): Promise<unknown>;
+  shown(): boolean; ///< the show is on
+  mayShow(): boolean;
+  show(): void; ///< begins it
+  mended(): void; ///< the simulation runs again
+}
+
 export class Divergence {
   private toldOf = false;
   private diverged = false; // in the last status
 
-  constructor(
-    private readonly send: (patch: Patch) => Promise<unknown>,
-    private readonly mended: () => void,
-  ) {}
+  constructor(private readonly host: DivergenceHost) {}
 
   get now(): boolean {
     return this.diverged;
@@ -20,7 +26,8 @@ export class Divergence {
   tell(diverged: Diverged): void {
     this.toldOf = true;
     // Once the patch is applied, the server continues from the last good state by itself.
-    showDiverged(diverged, async (patch) => void (await this.send(patch)));
+    const show = this.host.mayShow() ? () => this.host.show() : null;
+    showDiverged(diverged, async (patch) => void (await this.host.send(patch)), show);
   }
 
   // Shows and clears the notice by the status: another viewer may have applied the remedy, or the scene blew up before
@@ -29,10 +36,10 @@ export class Divergence {
     if (this.diverged && !diverged) {
       clearDiverged();
       this.toldOf = false;
-      this.mended();
+      if (!this.host.shown()) this.host.mended();
     }
     this.diverged = diverged === true;
-    if (!this.diverged || this.toldOf) return;
+    if (!this.diverged || this.toldOf || this.host.shown()) return;
     const limit = stability?.dt_limit;
     const dt = limit ? saferStep(limit) : 0;
     this.tell({

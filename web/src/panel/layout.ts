@@ -4,14 +4,14 @@ import { inBrowser } from "../link/kept";
 import type { FreeArea } from "../view/framing";
 
 const narrow = matchMedia("(max-width: 760px)");
-const leastSide = 120; // [px]: the least useful side of a picture
-const leastForWords = 60; // [px]: of a notice
+const leastPictureSides: [number, number] = [120, 120]; // [px]: the least useful width and height of a picture
+const leastWordsSides: [number, number] = [220, 60]; // [px]: of a notice
 const leastPicture = 0.5; // of the window, beside the open panel
 const panelKey = "clothlab-panel"; // in the browser: "open" or "folded", as somebody has chosen
 
-/// The largest rectangle of a window that none of the `covered` rectangles overlaps, with sides of `least` [px] and
-/// more; the whole window if there is none.
-function largestFree(covered: DOMRect[], width: number, height: number, least = leastSide): FreeArea {
+/// The largest rectangle of a window that none of the `covered` rectangles overlaps, at least so wide and
+/// high [px]; the whole window if there is none.
+function largestFree(covered: DOMRect[], width: number, height: number, [wide, high] = leastPictureSides): FreeArea {
   const cuts = (ends: number[], most: number) =>
     [...new Set([0, most, ...ends.filter((end) => end > 0 && end < most)])].sort((a, b) => a - b);
   const across = cuts(
@@ -27,10 +27,7 @@ function largestFree(covered: DOMRect[], width: number, height: number, least = 
     for (const right of across)
       for (const top of down)
         for (const bottom of down) {
-          if (
-            Math.min(right - left, bottom - top) < least ||
-            (right - left) * (bottom - top) <= best.width * best.height
-          )
+          if (right - left < wide || bottom - top < high || (right - left) * (bottom - top) <= best.width * best.height)
             continue;
           const meets = (box: DOMRect): boolean =>
             box.left < right && box.right > left && box.top < bottom && box.bottom > top;
@@ -68,7 +65,7 @@ export class Layout {
   /// Tells the style sheet where notices and banners cover no card, and so no button.
   private placeWords(): void {
     const bare = document.body.classList.contains("bare");
-    const free = largestFree(bare ? [] : this.covered(), innerWidth, innerHeight, leastForWords);
+    const free = largestFree(bare ? [] : this.covered(), innerWidth, innerHeight, leastWordsSides);
     const below = innerHeight - free.top - free.height;
     for (const [name, pixels] of Object.entries({ ...free, below }))
       document.body.style.setProperty(`--free-${name}`, `${pixels}px`);

@@ -65,7 +65,7 @@ function remove(box: Element): void {
 
 // leaves dt as it is
 const capitalised = (text: string): string => text.replace(/^[a-z](?=[a-z]{2})/, (letter) => letter.toUpperCase());
-const sentence = (text: string): string => capitalised(text).replace(/\.?$/, ".");
+export const sentence = (text: string): string => capitalised(text).replace(/\.?$/, ".");
 
 function actionButton(action: Action, box: HTMLElement): HTMLButtonElement {
   const run = document.createElement("button");
@@ -97,6 +97,9 @@ const asText = (value: unknown): string => (typeof value === "string" ? value : 
 export interface Diverged {
   reason: string;
   remedy?: { text: string; patch?: Patch };
+  /// What the server has compared in the last state [J, s]; null: no finite number. `elastic`: the energy is kinetic
+  /// and elastic, else kinetic alone.
+  energy?: { allowed: number | null; found: number | null; time: number | null; elastic: boolean };
 }
 
 const blewUp = "The simulation blew up";
@@ -109,7 +112,11 @@ export function clearDiverged(): void {
 }
 
 /// Says why the simulation blew up, with a button for its remedy.
-export function showDiverged({ reason, remedy }: Diverged, apply: (patch: Patch) => Promise<void>): void {
+export function showDiverged(
+  { reason, remedy }: Diverged,
+  apply: (patch: Patch) => Promise<void>,
+  show: (() => void) | null,
+): void {
   const patch = remedy?.patch;
   const run = (fix: Patch): void =>
     void apply(fix).catch((error: Error) => noticeError("The remedy was refused", error));
@@ -117,7 +124,10 @@ export function showDiverged({ reason, remedy }: Diverged, apply: (patch: Patch)
     title: blewUp,
     lines: [sentence(reason), ...(remedy ? [sentence(`Remedy: ${remedy.text}`)] : [])],
     stays: true,
-    actions: patch ? [{ label: "Apply the remedy", run: () => run(patch) }] : [],
+    actions: [
+      ...(patch ? [{ label: "Apply the remedy", run: () => run(patch) }] : []),
+      ...(show ? [{ label: "Show how", run: show }] : []),
+    ],
   });
 }
 

@@ -1,6 +1,6 @@
 // The ranges that the user has fixed for the colours of fields, kept in this browser; else each frame's own range.
 import { inBrowser } from "../link/kept";
-import type { FieldName } from "../link/protocol";
+import type { FieldName, ShownField } from "../link/protocol";
 
 const key = "clothlab-colour-range";
 
@@ -15,7 +15,7 @@ function read(): Partial<Record<FieldName, number>> {
 const fixed = read();
 
 /// The value of the last colour, if the user has fixed it.
-export const fixedRange = (field: FieldName): number | undefined => fixed[field];
+export const fixedRange = (field: ShownField): number | undefined => (field === "growth" ? undefined : fixed[field]);
 
 /// undefined: from now on each frame's own.
 export function fixRange(field: FieldName, range: number | undefined): void {
