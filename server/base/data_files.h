@@ -9,9 +9,10 @@
 
 namespace clothlab {
 
-/// The path of the file or folder `relative` (e.g. "shaders/methods/symplectic_euler.comp") in the first of
-/// these folders that has it: $CLOTHLAB_DATA, <the program's folder>/../share/clothlab, the source tree from
-/// which this program was built.
+/// The path of the file or folder `relative` (e.g. "shaders/methods/symplectic_euler.comp") in
+/// $CLOTHLAB_DATA, or else in share/clothlab in the program's folder or the nearest folder above it that has
+/// one: /usr/share/clothlab for /usr/bin/clothlab, wherever it was moved to. A build tree's share/clothlab is
+/// a link to the sources.
 Result<std::filesystem::path> data_path(const std::string& relative);
 
 }  // namespace clothlab

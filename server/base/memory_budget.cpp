@@ -11,8 +11,8 @@ namespace clothlab {
 namespace {
 
 constexpr double shares[MemoryBudget::uses] = {0.9, 0.25, 0.25, 0.125};
-constexpr const char* names[MemoryBudget::uses] = {"simulations", "what sessions can go back to",
-                                                   "recordings", "downloads"};
+constexpr const char* use_names[MemoryBudget::uses] = {"simulations", "what sessions can go back to",
+                                                       "recordings", "downloads"};
 
 std::size_t index_of(MemoryBudget::Use use) {
   return static_cast<std::size_t>(use);
@@ -68,7 +68,7 @@ Status MemoryBudget::exchange(Use use, std::uint64_t before, std::uint64_t after
   const std::lock_guard lock(mutex_);
   if (after > before && after - before > left_locked(use))
     return Error{"memory",
-                 memory_text(after) + " for " + names[index_of(use)] + ", where " +
+                 memory_text(after) + " for " + use_names[index_of(use)] + ", where " +
                      memory_text(left_locked(use)) + " are left",
                  "at most " + memory_text(share(use)) + " of them, in a server of " + memory_text(total_) +
                      " (--max-memory)"};
