@@ -434,6 +434,8 @@ class Connection(unittest.TestCase):
             with clothlab.connect(guarded.address, token="secret") as operator, \
                     clothlab.connect(guarded.address, token="public") as viewer:
                 self.assertEqual((operator.role, viewer.role), ("operator", "viewer"))
+                self.assertEqual(operator.version, operator.hello["version"])
+                self.assertRegex(operator.version, r"^\d+\.\d+\.\d+$")
                 self.assertEqual(operator.patch({"air_drag": 0.5})["applies"], "uniform")
                 self.assertEqual(viewer["/air_drag"], 0.5)
                 self.assertEqual(viewer.frame().positions.shape, (625, 3))

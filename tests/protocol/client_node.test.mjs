@@ -5,7 +5,7 @@ import http from "node:http";
 import { dirname, join } from "node:path";
 import { after, before, test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { Server, sleep } from "./harness.mjs";
+import { runProgram, Server, sleep } from "./harness.mjs";
 
 // Below tests/, so that Node 18 and 20 find `ws`.
 const folder = mkdtempSync(join(dirname(fileURLToPath(import.meta.url)), "client-"));
@@ -287,7 +287,9 @@ test("tokens make operators and viewers", async (t) => {
   for (const token of [undefined, "wrong"]) assert.equal((await error(clothlab.Refused, join(token))).code, -32001);
   const operator = await join("secret");
   const viewer = await join("public");
+  const { stdout } = await runProgram(["--version"]);
   assert.deepEqual([operator.role, viewer.role], ["operator", "viewer"]);
+  assert.deepEqual([`clothlab ${operator.version}\n`, viewer.version], [stdout, operator.version]);
   await operator.set({ "/air_drag": 0.5 });
   assert.equal(await viewer.get("/air_drag"), 0.5);
   assert.equal((await viewer.frame()).positions.length, 3 * 625);

@@ -418,6 +418,11 @@ export class Session {
     return this._socket !== null && this._lost === null;
   }
 
+  /** Of Clothlab on the server, as `clothlab --version` there says it. @returns {string} */
+  get version() {
+    return this.hello.version;
+  }
+
   /** @returns {"operator" | "viewer"} */
   get role() {
     return this.hello.role;

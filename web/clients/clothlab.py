@@ -457,6 +457,11 @@ class Session:
         return self._lost is None
 
     @property
+    def version(self) -> str:
+        """Of Clothlab on the server, as `clothlab --version` there says it."""
+        return _member(self.hello, "version", str, "hello")
+
+    @property
     def role(self) -> str:
         """"operator" or "viewer"."""
         return _member(self.hello, "role", str, "hello")

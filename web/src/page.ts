@@ -468,6 +468,7 @@ export class Page {
 
   private greeted(params: Params): void {
     this.hud.setRenderer(String(params.renderer));
+    this.hud.set("version", String(params.version));
     this.mayEdit = params.role !== "viewer";
     this.hand?.greeted(Number(params.client));
     this.undo.greeted(Number(params.client));

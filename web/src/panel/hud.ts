@@ -40,6 +40,7 @@ const rows = [
   ["memory", "Memory", "what the session takes of the memory that its server computes in"],
   ["viewers", "Viewers", "pages and scripts that watch this session"],
   ["renderer", "Server", "what the server computes on"],
+  ["version", "Version", "of Clothlab on the server"],
 ] as const;
 type Row = (typeof rows)[number][0];
 
