@@ -39,6 +39,7 @@ void add_presets(CLI::App& app, int& exit_code);
 void add_fabrics(CLI::App& app, int& exit_code);
 void add_info(CLI::App& app, int& exit_code);
 void add_selftest(CLI::App& app, int& exit_code);
+void add_manual(CLI::App& app, int& exit_code);
 
 /// Prints "clothlab: error: where: what; remedy" on stderr and returns `code`.
 int fail(const Error& error, ExitCode code);

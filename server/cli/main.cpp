@@ -43,6 +43,7 @@ void describe(CLI::App& app, int& exit_code) {
   add_fabrics(app, exit_code);
   add_info(app, exit_code);
   add_selftest(app, exit_code);
+  add_manual(app, exit_code);
   app.footer(examples);  // after the subcommands, which would inherit it
 }
 

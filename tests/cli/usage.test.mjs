@@ -18,6 +18,7 @@ const commands = [
   "fabrics",
   "info",
   "selftest",
+  "manual",
   "serve",
 ];
 
