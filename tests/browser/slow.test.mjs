@@ -35,7 +35,9 @@ async function throttled(session) {
 browserTest(
   "a page without pictures says so while that lasts, with what a step takes, and undoes its last change",
   async () => {
-    const { viewer, scene, link } = await throttled("slow-still");
+    const { viewer, client, scene, link } = await throttled("slow-still");
+    const { version } = await client.notification("hello");
+    assert.equal(await viewer.page.locator("#stats .version").textContent(), version);
     const box = viewer.page.locator("#slow");
     await box.waitFor({ state: "hidden" });
     const before = (await scene()).cloths[0].material.structural;
