@@ -1,5 +1,5 @@
-// Cost of the same accuracy under each method (bench_equal_error), with the machine that it was measured on, and as the
-// table of tests/README.md.
+// Cost of the same accuracy under each method (bench_equal_error), with the machine that it was measured on, and as a
+// table, which is printed.
 //   node tests/bench/equal_error.mjs [MACHINE]   ->   tests/bench/results/equal_error-MACHINE.json
 import { execFileSync } from "node:child_process";
 import { readFileSync, writeFileSync } from "node:fs";
