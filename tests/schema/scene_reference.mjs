@@ -36,10 +36,12 @@ const tables = [
   ["`weights[]`", ["$defs", "cloth", "properties", "weights", "items"]],
   ["`start: {scatter}` or `{scale}`", ["$defs", "cloth", "properties", "start"]],
   ["A collider: `colliders[]`", ["$defs", "collider"]],
-  ["", ["$defs", "shape", "properties"]], // one table for each
+  ["The shapes of colliders", ["$defs", "shape", "properties"]],
   ["`motion`, of a pin or a collider", ["$defs", "motion"]],
   ["`at`, of a pin or a weight", ["$defs", "at"]],
 ];
+
+const [, meshOfCloth] = tables.find(([title]) => title === "`mesh: {file}`");
 
 const code = (text) => "`" + text + "`";
 const number = (value) =>
@@ -47,9 +49,13 @@ const number = (value) =>
     ? value.toExponential().replace("e+", "e")
     : String(value);
 
+/// The range of a place or direction, which the document says once for all lists of 3 numbers.
+const anyNumber = "-1e6 to 1e6";
+
 /// The values that a key may have.
 function allowed(schema) {
   if ("const" in schema) return code(JSON.stringify(schema.const));
+  if (schema.enum?.includes("cotton")) return "[a fabric](#fabrics)";
   if (schema.enum) return schema.enum.map((value) => code(String(value))).join(", ");
   if (schema.type === "string") return schema.pattern?.startsWith("^#") ? "`#rrggbb`" : "text";
   if (schema.type === "boolean") return "`true`, `false`";
@@ -63,6 +69,7 @@ function allowed(schema) {
       schema.minItems === schema.maxItems ? `${schema.minItems}` : `${schema.minItems ?? 0} to ${schema.maxItems}`;
     const items = schema.prefixItems ? schema.prefixItems.map(allowed).join(", ") : allowed(schema.items);
     if (schema.prefixItems) return `list of ${items}`;
+    if (size === "3" && items === anyNumber) return "3 numbers";
     if (items === "see below") return `list of ${size}`;
     return `list of ${size}, each ${items}`;
   }
@@ -97,46 +104,61 @@ export function reference(schema) {
     );
   };
   const find = (path) => deep(path.reduce((part, key) => part[key], schema));
+  const inner = (key, value) => properties(value).map(([name, ...rest]) => [`${key}.${name}`, ...rest]);
   const properties = (part) =>
     part.properties
       ? Object.entries(part.properties).map(([key, value]) => [key, value, part.required ?? []])
       : (part.oneOf ?? []).flatMap((choice) =>
           properties(choice).flatMap(([key, value, required]) =>
-            value.properties
-              ? properties(value).map(([inner, ...rest]) => [`${key}.${inner}`, ...rest])
-              : [[key, value, required]],
+            value.properties ? inner(key, value) : [[key, value, required]],
           ),
         );
-  const rows = (part) =>
-    properties(part).map(([key, value, required]) => {
+  const shapes = (part) => Object.entries(part).flatMap(([key, value]) => inner(key, value));
+  const isShapes = (path) => path.at(-1) === "properties";
+  const rows = (keys) =>
+    keys.map(([key, value, required]) => {
       const name = key.split(".").at(-1);
       const fallback = required.includes(name)
-        ? "required"
+        ? "; required"
         : value.default === undefined
           ? ""
-          : code(JSON.stringify(value.default));
-      return `| ${code(key)} | ${allowed(value)} | ${fallback} | ${value.description ?? ""} |`;
+          : `; ${code(JSON.stringify(value.default))}`;
+      const said = value.description ? `: ${value.description}` : "";
+      return `* ${code(key)} (${allowed(value)}${fallback})${said}`;
     });
-  const table = (part, title) =>
+  /// Rows of shapes, without those that a cloth's mesh has, too: these are named in the last row.
+  const ofShapes = (list) => {
+    const bare = (row) => row.replace(/^\* `(?:\w+\.)*/, "");
+    const cloth = rows(properties(find(meshOfCloth))).map(bare);
+    const [other, like] = [false, true].map((same) => list.filter((row) => cloth.includes(bare(row)) === same));
+    return [...other, `* ${like.map((row) => row.split(" ")[1]).join(", ")}: As of a cloth's mesh.`];
+  };
+  const table = (part, path, title) =>
     title.startsWith("`at`")
       ? part.oneOf.map(
           (choice) => `* ${choice.description ?? `${allowed(choice)}: ${choice.properties.box.description}`}`,
         )
-      : ["| key | allowed | default | |", "|---|---|---|---|", ...rows(part)];
-  const each = tables.flatMap(([title, path]) =>
-    title === "" ? Object.keys(find(path)).map((key) => [code(key), [...path, key]]) : [[title, path]],
+      : isShapes(path)
+        ? ofShapes(rows(shapes(part)))
+        : rows(properties(part));
+  // What a row of a table says already is not said again above the table of its keys.
+  const inRow = new Set(
+    tables.flatMap(([, path]) => (isShapes(path) ? [] : properties(find(path)))).map(([, value]) => value.description),
   );
-  return each
+  return tables
     .map(([title, path]) => {
       const part = find(path);
-      const said = path.length > 0 && part.description ? [wrapped(part.description), ""] : [];
-      return [`### ${title}`, "", ...said, ...table(part, title), ""].join("\n");
+      const said = path.length > 0 && part.description && !inRow.has(part.description);
+      const above = said ? [wrapped(part.description), ""] : [];
+      return [`### ${title}`, "", ...above, ...table(part, path, title).map(item), ""].join("\n");
     })
     .join("\n");
 }
 
 /// A paragraph in lines of at most 120 characters.
 const wrapped = (text) => text.replace(/(?=.{121})(.{1,120}) /g, "$1\n");
+/// An item of a list, its further lines indented.
+const item = (text) => text.replace(/(?=.{119})(.{1,118}) /g, "$1\n  ").replace(/ +$/gm, "");
 
 /// The fabrics and what they are like.
 function fabricTable(fabrics) {
