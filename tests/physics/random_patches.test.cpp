@@ -88,11 +88,11 @@ class Session {
   /// Goes back to the last good state with the remedy, as a user would after sim.diverged.
   std::string recover() {
     ++blow_ups_;
-    const auto [reason, remedy] = guard_.go_back();
-    if (reason.empty()) return "blown up for no reason";
-    json solver{{"dt", remedy.dt}};
-    if (remedy.method || document_.scene.solver.automatic)
-      solver["method"] = scene::name(remedy.method.value_or(document_.scene.solver.method));
+    const sim::GuardedRun::Setback back = guard_.go_back();
+    if (back.reason.empty()) return "blown up for no reason";
+    json solver{{"dt", back.remedy.dt}};
+    if (back.remedy.method || document_.scene.solver.automatic)
+      solver["method"] = scene::name(back.remedy.method.value_or(document_.scene.solver.method));
     const Result<scene::Document> next = scene::apply_patch(document_, {{"solver", solver}});
     if (!next) return "the remedy is refused: " + next.error().text();
     if (const std::string wrong = still_goes(); !wrong.empty()) return "after going back " + wrong;
