@@ -1,5 +1,5 @@
 // A method that advances the state by one step on the GPU. Each family of methods is one file: whole_step.cpp
-// (one dispatch a step), rk4.cpp, implicit_euler.cpp (with bdf2.h), gauss_seidel.cpp.
+// (one dispatch a step), rk4.cpp, implicit_euler.cpp (with implicit_passes.h, bdf2.h), gauss_seidel.cpp.
 #pragma once
 
 #include <cstdint>
