@@ -136,7 +136,7 @@ HttpRequest::Progress HttpRequest::answer() {
   const std::int64_t wait = hub_.http_service().wait(network_, session::now_us());
   if (wait > 0 && path_ != "/healthz") {  // a load balancer asks that, and must not wait for others
     lws_rx_flow_control(wsi_, 0);
-    lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, http_patience);
+    lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, making_patience);
     later_.start(std::max<std::int64_t>(wait, 2000));
     return Progress::waits;
   }
@@ -246,7 +246,7 @@ std::optional<HttpAnswer> HttpRequest::find_protected(const std::string& path) {
 
 std::optional<HttpAnswer> HttpRequest::scene_file(Room& room) {
   if (const session::JsonText& file = room.scene_file()) return scene_answer(file);
-  lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, http_patience);
+  lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, making_patience);
   const auto pass_on = [&hub = hub_, id = id_, session = room.name()](
                            const std::shared_ptr<const scene::Document>& of, const session::JsonText& file) {
     if (Room* there = hub.find_room(session); there && file) there->keep_scene_file(of, file);
@@ -271,7 +271,7 @@ std::optional<HttpAnswer> HttpRequest::collider_mesh(Room& room, const std::stri
   if (hub_.relays()) {
     if (const std::shared_ptr<const std::string> known = room.relayed_collider(name))
       return shared_binary(known);
-    lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, http_patience);
+    lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, making_patience);
     room.ask_collider(name, id_);
     return std::nullopt;
   }
@@ -301,7 +301,7 @@ std::optional<HttpAnswer> HttpRequest::recording(const Room& room, const std::st
   // A text that grows takes up to twice as much, and three times while it moves.
   const std::uint64_t bytes = 3 * (film ? film->bytes(facts.frames, facts.vertices) : facts.file->size());
   if (std::optional<HttpAnswer> why = reserve(MemoryBudget::Use::downloads, bytes + player)) return why;
-  lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, http_patience);
+  lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, making_patience);
   hub_.make_of_recording(id_, facts, ending);
   return std::nullopt;
 }
@@ -317,7 +317,7 @@ std::optional<HttpAnswer> HttpRequest::ask_session(const std::string& session, s
           MemoryBudget::Use::simulations, pixel * pixels + vertex * model::size_of(room.scene()).vertices))
     return why;
   if (!hub_.find_room(session)->capture(id_, what)) return busy();
-  lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, http_patience);
+  lws_set_timeout(wsi_, PENDING_TIMEOUT_HTTP_CONTENT, making_patience);
   return std::nullopt;
 }
 

@@ -63,8 +63,9 @@ inline constexpr std::size_t max_moments_bytes = 256 << 10;  ///< of positions i
 inline constexpr int max_comparisons = 4;  ///< of all clients whose positions are kept; one of each client
 inline constexpr int max_snapshot_side = 4096;  ///< [pixels]
 inline constexpr std::size_t max_exports = 8;   ///< pictures and meshes that wait or are made; beyond: 503
-/// HTTP's patience with what is made for a request, and with who reads nothing [s].
-inline constexpr int http_patience = 30;
+/// HTTP's patience with what is made for a request, beside others on a busy machine, and with who reads
+/// nothing [s].
+inline constexpr int making_patience = 120, http_patience = 30;
 /// Unsent bytes that the kernel may hold for a client; few, because a newer frame can no longer replace a
 /// frame among them.
 inline constexpr int unsent_kernel_bytes = 64 * 1024;
