@@ -36,7 +36,7 @@ test("a range without bytes, bytes without a range, and a range that is none are
 
 test("the legend has three figures and a unit", () => {
   const { fields } = page;
-  assert.deepEqual(Object.keys(fields), ["strain", "speed", "contact"]);
+  assert.deepEqual(Object.keys(fields), ["strain", "speed", "contact", "growth"]);
   assert.equal(fields.strain.most(0.109375), "10.9 %");
   assert.equal(fields.strain.most(0.0005), "0.05 %");
   assert.equal(fields.speed.most(3.5), "3.5 m/s");
@@ -51,7 +51,7 @@ test("the legend's colours lie where the shader gives them: evenly, of strain in
 });
 
 test("what is stored or not a field is no field", () => {
-  for (const name of ["", null, "none", "toString", "cloth"]) assert.equal(page.isField(name), false);
+  for (const name of ["", null, "none", "toString", "cloth", "growth"]) assert.equal(page.isField(name), false);
   for (const name of ["strain", "speed", "contact"]) assert.equal(page.isField(name), true);
 });
 

@@ -168,6 +168,7 @@ TEST_CASE("frames come under numbers that rise, also from a server that counts a
 TEST_CASE("a status tells of the topology under the revision that it has here") {
   Pair pair;
   pair.pass();
+  pair.want_frames();
   pair.topology = message(stream::MessageKind::topology, 1, 0, {9});
   pair.pass("origin-2");
   const auto told_of = [&](int theirs) {
