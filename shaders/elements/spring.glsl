@@ -2,8 +2,8 @@
 // Provot 1995, section 2. In the common subset of GLSL and C++ (see types.glsl, elements.h).
 //
 // Like every law it sees an element from one of its corners: `Edges` are the differences between that corner and the
-// others, of places [m], of velocities [m/s], or of any other vector at vertices. shaders/README.md lists the functions
-// that all laws define under the same names.
+// others, of places [m], of velocities [m/s], or of any other vector at vertices. All laws define the functions
+// below under the same names (shaders/README.md).
 
 struct Spring {
   real rest_length;  // [m]
