@@ -39,9 +39,11 @@ int Client::send_close() {
 }
 
 /// Between two texts goes a frame that is due, so that frames do not wait for many answers. One of a new
-/// topology waits, because all that was said before it comes first.
+/// topology waits, because all that was said before it comes first; and the first one of a form, because the
+/// answer to its subscription comes first: it tells a viewer what is in the frame.
 bool Client::frame_goes_first() {
-  if (!std::exchange(text_was_last_, false) || !room_ || !pacing_.subscribed() || !topology_sent_)
+  if (!std::exchange(text_was_last_, false) || !room_ || !pacing_.subscribed() || !topology_sent_ ||
+      !pacing_.sent_any())
     return false;
   const stream::SharedMessage frame = room_->frame(pacing_.form());
   return frame && frame->header.topology_revision == topology_revision_ &&

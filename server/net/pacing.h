@@ -21,6 +21,8 @@ class FramePacing {
   stream::Form form() const { return form_; }
   double rate() const { return rate_; }
 
+  /// A frame of the form that was last subscribed to has been sent.
+  bool sent_any() const { return sent_any_; }
   /// True if this frame is newer than the last one sent, or if none was sent.
   bool is_news(std::uint32_t sequence) const { return !sent_any_ || newer(sequence, last_sent_); }
   /// Time until the next frame may be sent [us], 0: now. Empty without a subscription, and while the viewer

@@ -1,6 +1,7 @@
 // stream.subscribe with a field: a number at each vertex, after all vertices.
 import assert from "node:assert/strict";
 import { after, afterEach, before, beforeEach, test } from "node:test";
+import { decode } from "./decode.mjs";
 import { Client, Server } from "./harness.mjs";
 
 let server, client;
@@ -78,6 +79,34 @@ test("no frame after an answer has the field of before, however often it changes
     );
     for (const frame of client.frames.slice(from)) assert.equal(frame.range > 0, field !== "none", field);
   }
+});
+
+test("a frame that is there already comes after the answer, too, though other answers wait before it", async () => {
+  await stopAt(300);
+  // Somebody else's subscription keeps a frame of each field there.
+  const others = await Promise.all(names.map(() => Client.connect(server)));
+  await Promise.all(others.map((other, i) => other.request("stream.subscribe", { field: names[i] })));
+  await Promise.all(others.map((other) => other.frame(({ step, range }) => step === 300 && range > 0)));
+  let agreed, early;
+  client.socket.prependListener("message", (data, isBinary) => {
+    if (!isBinary) agreed ||= JSON.parse(data).result?.field !== undefined;
+    else if (!agreed && decode(data, client.topologies.at(-1)).range > 0) early = true;
+  });
+  for (let round = 0; round < 20; ++round)
+    for (const field of names) {
+      await subscribe({});
+      [agreed, early] = [false, false];
+      const next = client.nextFrame(({ range }) => range > 0);
+      // In one packet, so that all answers wait when the first one is sent.
+      client.socket._socket.cork();
+      const answers = [...Array(8).keys()].map((t) => client.request("ping", { t }));
+      answers.push(subscribe({ field }));
+      client.socket._socket.uncork();
+      await Promise.all(answers);
+      await next;
+      assert.equal(early, false, `${field} in round ${round}`);
+    }
+  await Promise.all(others.map((other) => other.close()));
 });
 
 test("the field's range holds the largest value that sim.status tells, and the bytes reach it", async () => {
