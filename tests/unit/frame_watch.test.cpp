@@ -26,12 +26,10 @@ std::string frame(int opcode, std::size_t payload, bool masked) {
 
 /// The bytes passed on, if they come in pieces of this size.
 std::string passed(FrameWatch& watch, const std::string& bytes, std::size_t piece) {
-  std::string all;
+  std::string all, part(1000000, '\0');
   for (std::size_t at = 0; at < bytes.size(); at += piece) {
-    std::string part = bytes.substr(at, piece);
-    const std::size_t size = part.size();
-    part.resize(1000000);
-    all += part.substr(0, watch.filter(reinterpret_cast<unsigned char*>(part.data()), size, part.size()));
+    const std::size_t size = bytes.copy(part.data(), piece, at);
+    all.append(part, 0, watch.filter(reinterpret_cast<unsigned char*>(part.data()), size, part.size()));
   }
   return all;
 }
