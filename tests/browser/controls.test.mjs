@@ -13,7 +13,7 @@ browserTest(
     const started = Date.now();
     await viewer.page.mouse.move(...at(0.75));
     await viewer.page.mouse.down();
-    for (let i = 0; i < 60; ++i) await viewer.page.mouse.move(...at(0.75 - i * 0.005));
+    for (let i = 0; i < 30; ++i) await viewer.page.mouse.move(...at(0.75 - i * 0.01));
     await viewer.page.mouse.up();
     const seconds = (Date.now() - started) / 1000;
     const shown = Number(await viewer.number("Cloth", "structural").inputValue());

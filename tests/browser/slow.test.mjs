@@ -1,5 +1,6 @@
 // What the page shows when a server cannot keep up. The server here is quick; its messages are held back.
 import assert from "node:assert/strict";
+import { thorough } from "../thorough.mjs";
 import { browserTest, eventually, withServer } from "./browser.mjs";
 
 const { both } = withServer();
@@ -49,7 +50,7 @@ browserTest(
     await box.filter({ hasText: /No new picture for \d+ s/ }).waitFor({ state: "visible" });
     await box.filter({ hasText: "a step takes it 2 s" }).waitFor(); // 1 ms at that factor
     assert.equal(await viewer.page.locator("#stats .rtf").textContent(), "×0.0005");
-    await viewer.page.waitForTimeout(10_000); // longer than any notice stays
+    await viewer.page.waitForTimeout(thorough ? 10_000 : 1000); // the former is longer than any notice stays
     assert.ok(await box.isVisible());
     await box.getByRole("button", { name: "Undo" }).click();
     await eventually("the change undone", scene, ({ cloths }) => cloths[0].material.structural === before);

@@ -5,6 +5,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
 import { shortest, softpipe } from "../drivers/drivers.mjs";
+import { some, thoroughTest } from "../thorough.mjs";
 import { clothlab, folder } from "./program.mjs";
 
 function selftest(only, environment) {
@@ -16,7 +17,7 @@ function selftest(only, environment) {
   return { status, said: stdout + stderr, device, checks };
 }
 
-for (const blocks of [16, 8])
+for (const blocks of some([8, 16]))
   test(`a device that allows a program ${blocks} storage blocks does it right, reading storage where that fits`, () => {
     // Implicit Euler's programs read the most; surfaces and sweeps have the most programs.
     const { status, said, checks } = selftest(
@@ -42,7 +43,7 @@ test("where no way to read fits, the selftest names the program, its blocks and 
   assert.match(said, /^WRONG programs: seed: .*shaders\/\S+: has \d+ storage blocks, and a program may have 3 here/m);
 });
 
-test("softpipe does it right", () => {
+thoroughTest("softpipe does it right", () => {
   const { status, said, device, checks } = selftest(
     shortest.map((name) => `scene: ${name}`),
     { ...softpipe, CLOTHLAB_READS: "textures", LP_NUM_THREADS: "0" },

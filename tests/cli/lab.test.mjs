@@ -5,6 +5,7 @@ import { existsSync, mkdirSync, readFileSync, readdirSync, writeFileSync } from 
 import { join } from "node:path";
 import { test } from "node:test";
 import { userShaders } from "../caches.mjs";
+import { thoroughTest } from "../thorough.mjs";
 import { cache, lab } from "./lab_program.mjs";
 import { clothlab, folder, program } from "./program.mjs";
 
@@ -60,7 +61,7 @@ test("the same question is answered from the cache, --fresh and another scene ar
   assert.doesNotMatch(lab(...quick, "--fresh").stderr, /measured before/);
 });
 
-test("a cache that cannot be written changes nothing", () => {
+thoroughTest("a cache that cannot be written changes nothing", () => {
   writeFileSync(join(folder, "in-the-way"), "");
   const { status, stderr } = clothlab([...chart.slice(0, -1), "2"], {
     ...userShaders,

@@ -38,7 +38,7 @@ Watched watch(sim::Simulation& simulation, double time, std::uint32_t stride) {
 TEST_CASE("no preset is taken for a blow-up, and nearly all of its states are ones to go back to") {
   const auto context = test::context();
   const double watched = test::thorough() ? 2.5 : 0.5;  // [s]
-  test::Part part(2);
+  test::Part part(4);
   for (const std::string& name : scene::preset_names()) {
     if (name == "blowup" || part.leaves_out()) continue;
     const auto simulation = test::simulation(preset(name));

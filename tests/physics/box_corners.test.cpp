@@ -71,8 +71,10 @@ double deepest(const model::Model& model, const std::vector<glm::vec3>& place, c
 
 TEST_CASE("cloth that is drawn over the end of a table does not catch on it", "[physics][surface]") {
   const auto context = test::context();
+  test::Part part(3);
   for (const char* method : {"symplectic_euler", "vbd"})
     for (const bool moves : {false, true}) {
+      if (part.leaves_out()) continue;  // each method, and each table
       INFO(method << (moves ? ", a table that could move" : ""));
       scene::Scene scene = over_the_end(method);
       const std::uint32_t steps = step_stably(scene);
@@ -103,7 +105,8 @@ TEST_CASE("cloth drawn into a narrow slot between boxes goes through neither its
   const auto scenes = test::contact_scenes();
   const auto slot =
       std::find_if(scenes.begin(), scenes.end(), [](const auto& of) { return of.name == "slot"; });
-  for (const char* method : {"implicit_euler", "vbd"}) {
+  for (const std::string method : {"implicit_euler", "vbd"}) {
+    if (method != "vbd" && !test::thorough()) continue;
     INFO(method);
     test::ContactOptions options;
     options.kind = "surface";

@@ -67,10 +67,12 @@ double mean(const sim::Simulation& simulation, const sim::State& state, std::siz
 
 TEST_CASE("cotton that falls on a ball is stretched no more than cotton is, and gains no energy") {
   const auto context = test::context();
+  test::Part part(5);
   for (const bool of_triangles : {false, true})
     for (const auto& [method, dt] : {std::pair{scene::Method::implicit_euler, 1.0 / 60.0},
                                      {scene::Method::implicit_euler, 1.0 / 240.0},
                                      {scene::Method::bdf2, 1.0 / 60.0}}) {
+      if (part.leaves_out()) continue;  // implicit Euler on a ball, BDF2 on one of triangles
       INFO((of_triangles ? "a ball of triangles" : "a ball")
            << ", " << scene::name(method) << ", steps of " << dt << " s");
       scene::Scene scene = one_cloth(13, 0.24, 0.12, cotton, dt);
@@ -128,6 +130,7 @@ TEST_CASE("sheets that lie on each other on a floor are a thickness apart, and a
   const auto context = test::context();
   constexpr int layers = 5;
   for (const bool of_triangles : {false, true}) {
+    if (of_triangles && !test::thorough()) continue;
     INFO((of_triangles ? "a floor of triangles" : "a floor"));
     scene::Scene scene = one_cloth(7, 0.2, 0.5 * thickness, soft, 0.01);
     const double lift = of_triangles ? 0.5 * thickness : 0.0;
@@ -156,6 +159,7 @@ TEST_CASE("a sheet on a slope holds up to the angle whose tangent is the frictio
   for (const bool of_triangles : {false, true})
     for (const double dt : {0.002, 0.01})
       for (const double share : {0.98, 1.02, 1.3}) {
+        if (!test::thorough() && of_triangles != (dt < 0.005)) continue;
         const double angle = std::atan(share * friction);
         INFO((of_triangles ? "a slope of triangles" : "a slope")
              << ", steps of " << dt << " s, tangent " << share << " of the friction");

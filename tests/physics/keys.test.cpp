@@ -6,6 +6,7 @@
 #include "server/reference/trajectory.h"
 #include "server/scene/keys.h"
 #include "server/sim/kept_states.h"
+#include "tests/methods.h"
 #include "tests/physics/stage.h"
 #include "tests/sides.h"
 
@@ -108,7 +109,7 @@ TEST_CASE(
   // 10 t / 0.4 sideways: 10 / 0.4 * t^3 / 6.
   const dvec3 way(most * time * time / 6.0, 0.0, 0.0);
   for (const test::Side side : test::sides)
-    for (const Method method : scene::methods) {
+    for (const Method method : test::tried_of(scene::methods)) {
       INFO(scene::name(method) << ", " << test::name(side));
       scene::Scene scene = free_sheet(method, dt);
       scene.keys = {key("/gravity", {0.0, time}, {dvec3(0.0), dvec3(most, 0, 0)})};
@@ -134,7 +135,7 @@ TEST_CASE("a pin that lets go leaves its vertices the velocity of its motion: th
   const dvec3 velocity(0.7, 0.2, -0.4), gravity(0, -9.8, 0);
   for (const bool moves : {true, false})
     for (const test::Side side : test::sides)
-      for (const Method method : scene::methods) {
+      for (const Method method : test::tried_of(scene::methods)) {
         INFO(scene::name(method) << ", " << test::name(side) << (moves ? ", moving" : ", standing"));
         scene::Scene scene = free_sheet(method, dt);
         scene.gravity = gravity;
@@ -154,7 +155,7 @@ TEST_CASE("a pin that lets go leaves its vertices the velocity of its motion: th
 TEST_CASE(
     "a step with keys is the same on the GPU and in the reference, under each method and in both models") {
   const auto context = test::context();
-  test::Part part(2);
+  test::Part part(3);
   for (const bool finite_elements : {false, true})
     for (const Method method : scene::methods) {
       if (finite_elements && method == Method::pbd) continue;
@@ -209,7 +210,7 @@ TEST_CASE("the reference's two methods agree on the motion under keys") {
 
 TEST_CASE("keys count from the start again after a reset, and from a kept state as before, to the bit") {
   const auto context = test::context();
-  for (const Method method : scene::methods) {
+  for (const Method method : test::tried_of(scene::methods)) {
     INFO(scene::name(method));
     scene::Scene scene = busy(method, springs);
     scene.keys = all_keys(scene);
@@ -242,7 +243,7 @@ TEST_CASE("keys count from the start again after a reset, and from a kept state 
 
 TEST_CASE("a scene whose keys have the values that it has anyway moves as without them, to the bit") {
   const auto context = test::context();
-  for (const Method method : scene::methods) {
+  for (const Method method : test::tried_of(scene::methods)) {
     INFO(scene::name(method));
     scene::Scene scene = busy(method, springs);
     const auto plain = test::simulation(scene);

@@ -1,6 +1,7 @@
 // The order of every method: of the reference over three halvings of dt, of the GPU as far as float32 allows.
 // What float32 adds is measured by itself: the distance between the two at the same dt.
 #include "server/scene/suited.h"
+#include "tests/methods.h"
 #include "tests/physics/orders.h"
 
 using namespace clothlab;
@@ -35,6 +36,12 @@ std::string text(const std::vector<Rung>& rungs) {
     lines += "\n  " + std::to_string(rung.steps) + " steps: error " + std::to_string(rung.error * 1e6) +
              " um, of float32 " + std::to_string(rung.floor * 1e6) + " um";
   return lines;
+}
+
+/// Of the plans, those of the methods that are tried.
+std::vector<Plan> tried_plans(std::vector<Plan> plans) {
+  std::erase_if(plans, [](const Plan& plan) { return !tried(plan.method); });
+  return plans;
 }
 
 /// Checks every planned method on `scene` against the truth at `time` [s].
@@ -85,15 +92,15 @@ TEST_CASE("one spring: every method has its order, in float32 down to a micromet
 
 TEST_CASE("one damped spring: every method has its order, in float32 down to a micrometre") {
   check_orders([](Method method, double dt) { return precise(one_spring(method, dt, 1.6)); }, 1.75, 4000,
-               {{Method::explicit_euler, 200, 3, 2e-6},
-                {Method::symplectic_euler, 100, 3, 2e-6},
-                {Method::verlet, 20, 3, 1e-6},
-                {Method::rk4, 20, 1, 1e-6},
-                {Method::implicit_euler, 100, 3, 5e-6},
-                {Method::pbd, 100, 3, 5e-6},
-                {Method::xpbd, 100, 3, 5e-6},
-                {Method::vbd, 100, 3, 5e-6},
-                {Method::bdf2, 100, 2, 5e-6}});
+               tried_plans({{Method::explicit_euler, 200, 3, 2e-6},
+                            {Method::symplectic_euler, 100, 3, 2e-6},
+                            {Method::verlet, 20, 3, 1e-6},
+                            {Method::rk4, 20, 1, 1e-6},
+                            {Method::implicit_euler, 100, 3, 5e-6},
+                            {Method::pbd, 100, 3, 5e-6},
+                            {Method::xpbd, 100, 3, 5e-6},
+                            {Method::vbd, 100, 3, 5e-6},
+                            {Method::bdf2, 100, 2, 5e-6}}));
 }
 
 // Implicit Euler and BDF2 leave 1e-7 of a momentum of 4 m/s unsolved per step, for up to 800 steps in 1 s: at
@@ -152,7 +159,7 @@ TEST_CASE("a sheet of finite elements hung by two corners: every method has its 
                                 {Method::vbd, 100, 2, 1e-5},
                                 {Method::bdf2, 50, 0, 2e-5}};
   CHECK(plans.size() == scene::suited_methods(scene(Method::verlet, 1e-4), {})->size());
-  check_orders(scene, 0.05, 1000, plans);
+  check_orders(scene, 0.05, 1000, tried_plans(plans));
 }
 
 TEST_CASE(

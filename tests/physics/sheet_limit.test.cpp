@@ -7,6 +7,7 @@
 #include "server/reference/trajectory.h"
 #include "server/scene/method.h"
 #include "tests/curved.h"
+#include "tests/methods.h"
 #include "tests/sides.h"
 #include "tests/small_scenes.h"
 #include "tests/stretch.h"
@@ -64,7 +65,7 @@ TEST_CASE(
     "grain, but for steps that are told of") {
   const auto context = test::context();
   constexpr double limit = 0.05;
-  for (const Method method : sheet_methods())
+  for (const Method method : tried_of(sheet_methods()))
     for (const double grain : {0.0, 30.0}) {
       const scene::Scene scene = strip(method, limit, grain);
       Stepped stepped(Side::gpu, scene);

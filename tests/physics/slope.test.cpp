@@ -56,12 +56,14 @@ double slid(Side side, const scene::Scene& scene, int steps) {
 TEST_CASE(
     "a sheet slides down a slope as far as it should at any step and with a single sweep: PBD, XPBD, VBD") {
   const auto context = test::context();
+  Part part(5);
   for (const Side side : sides) {
     for (const Method method : methods) {
       for (const double degrees : {5.0, 10.0, 25.0, 45.0}) {
         for (const double dt : {1.0 / 240.0, 0.016, 1.0 / 30.0}) {
           for (const int iterations : {1, 4}) {
             for (const double friction : {0.0, 0.05, 0.3}) {
+              if (part.leaves_out()) continue;  // each value of each
               const int steps = static_cast<int>(0.5 / dt);
               const double angle = in_radians(degrees);
               const double acceleration = std::max(0.0, g * (std::sin(angle) - friction * std::cos(angle)));

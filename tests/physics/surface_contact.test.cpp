@@ -4,6 +4,7 @@
 #include "server/scene/suited.h"
 #include "tests/contact_scenes.h"
 #include "tests/crossings.h"
+#include "tests/methods.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;
@@ -124,11 +125,13 @@ TEST_CASE("surfaces that start apart never cross: every method, sheets thrown, f
       set_method(stress.scene, method);
       if (scene::unsuited(method, stress.scene)) continue;
       // Methods that meet contacts after their steps share how they do it: one of them meets everything, the
-      // others sheets thrown fast and a twist. Of the others VBD meets everything in every run of the tests.
+      // others sheets thrown fast and a twist. Of the others VBD meets everything in every run of the tests;
+      // there, one of each family meets a twist.
       const std::string_view what = stress.name;
-      const bool everything = method == scene::Method::symplectic_euler || method == scene::Method::vbd ||
-                              (test::thorough() && scene::iterates(method));
-      if (!everything && stress.speed < 5.0 && what != "twist") continue;
+      const bool everything =
+          method == scene::Method::vbd ||
+          (test::thorough() && (scene::iterates(method) || method == scene::Method::symplectic_euler));
+      if (!everything && stress.speed < 5.0 && (what != "twist" || !test::tried(method))) continue;
       const Outcome outcome = run(stress);
       INFO(scene::name(method) << ", " << stress.name << " at " << stress.speed
                                << " m/s: " << outcome.last.surface_cuts << " cuts, "
@@ -144,6 +147,7 @@ TEST_CASE("a pin lifts the sheets that lie on its own, also if it goes nearly th
   const scene::json document = test::contact::dragged_pin({16, thickness, 1.0, "implicit_euler", "surface"});
   for (const scene::Method method :
        {scene::Method::implicit_euler, scene::Method::xpbd, scene::Method::vbd}) {
+    if (method == scene::Method::xpbd && !test::thorough()) continue;
     scene::Scene scene = scene::validate(document)->scene;
     REQUIRE(scene.solver.dt == 0.004);  // [s]: 4 mm at first
     scene.solver.method = method;
@@ -191,7 +195,7 @@ TEST_CASE("runs with contact between surfaces end in the same bits, also where l
     const Outcome outcome = run(stress);
     CHECK(outcome.most_pairs > 64);
     CHECK(outcome.hash == hash);
-    for (int again = 0; again < 2; ++again) {
+    for (int again = 0; again < (test::thorough() ? 2 : 1); ++again) {
       const Outcome other = run(stress);
       CHECK(other.hash == outcome.hash);
       CHECK(other.last.surface_pairs == outcome.last.surface_pairs);
@@ -202,7 +206,7 @@ TEST_CASE("runs with contact between surfaces end in the same bits, also where l
 
 TEST_CASE("two free sheets that collide keep their common momentum to 1e-4") {
   const auto context = test::context();
-  for (const scene::Method method : scene::methods) {
+  for (const scene::Method method : test::tried_of(scene::methods)) {
     Stress stress = thrown(4.0);
     set_method(stress.scene, method);
     if (scene::unsuited(method, stress.scene)) continue;
@@ -261,9 +265,11 @@ TEST_CASE(
     "left above it") {
   const auto context = test::context();
   constexpr double time = 0.15;
+  test::Part part(2);
   for (const scene::Method method :
        {scene::Method::symplectic_euler, scene::Method::verlet, scene::Method::implicit_euler,
         scene::Method::xpbd, scene::Method::vbd}) {
+    if (part.leaves_out()) continue;
     INFO(scene::name(method));
     const double angle = std::atan(0.4) * 180.0 / 3.14159265358979;
     const auto expected = [&](double degrees, double friction) {

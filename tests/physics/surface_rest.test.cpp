@@ -73,8 +73,8 @@ TEST_CASE("the floor carries all sheets that lie on each other: the lowest one n
   const auto context = test::context();
   for (const scene::Method method : {scene::Method::symplectic_euler, scene::Method::implicit_euler,
                                      scene::Method::xpbd, scene::Method::vbd}) {
-    // Of the methods whose steps are long, one: their contact is the same.
-    if (!test::thorough() && method != scene::Method::vbd && scene::iterates(method)) continue;
+    // Of long steps, one method's: their contact is the same, and 1.7 s are many short steps.
+    if (!test::thorough() && method != scene::Method::vbd) continue;
     const scene::Scene scene = four_sheets(method);
     const auto simulation = test::simulation(scene);
     const auto steps = [&](double seconds) { return static_cast<std::uint32_t>(seconds / scene.solver.dt); };
@@ -104,9 +104,9 @@ TEST_CASE("a sheet thrown along a floor or over another slides v^2 / (2 mu g) fa
   for (const bool over_another : {false, true}) {
     for (const scene::Method method : {scene::Method::symplectic_euler, scene::Method::implicit_euler,
                                        scene::Method::xpbd, scene::Method::vbd}) {
-      // Each method once: half of them over the floor, the others over another sheet.
-      const bool second = method == scene::Method::implicit_euler || method == scene::Method::vbd;
-      if (!test::thorough() && over_another != second) continue;
+      // One that adds forces up along the floor, one that sweeps over another sheet.
+      const auto tried = over_another ? scene::Method::vbd : scene::Method::symplectic_euler;
+      if (!test::thorough() && method != tried) continue;
       scene::Scene scene = above_floor(method, friction);
       scene.air_drag = 0.0;
       scene.colliders[0].friction = friction;

@@ -4,6 +4,7 @@
 
 #include "server/reference/trajectory.h"
 #include "server/scene/method.h"
+#include "tests/methods.h"
 #include "tests/physics/stage.h"
 #include "tests/sides.h"
 
@@ -56,7 +57,7 @@ TEST_CASE("a flat sheet falls through air at rest as its closed form says, under
   const double v_t = std::sqrt(2.0 * density * g / (1.2 * drag));
   REQUIRE(g * t / v_t > 9.0);  // then the speed is within 1e-7 of v_t
   for (const Side side : test::sides)
-    for (const scene::Method method : scene::methods) {
+    for (const scene::Method method : test::tried_of(scene::methods)) {
       const bool long_step = scene::any_step_is_stable(method) && scene::facts(method).order == 1;
       const int steps = long_step ? 60 : 500;
       scene::Scene scene = sheet_in({{0.0, 0.0, 0.0}, 0.0, 0.0, drag, 0.2}, density, method, t / steps);
@@ -78,7 +79,7 @@ TEST_CASE(
   const auto context = test::context();
   const glm::dvec3 air(4.0, 3.0, 0.0);
   for (const Side side : test::sides)
-    for (const scene::Method method : scene::methods)
+    for (const scene::Method method : test::tried_of(scene::methods))
       for (const double lift : {0.0, 0.5, 3.0}) {
         scene::Scene scene = sheet_in({air, 0.0, 0.0, 1.0, lift}, 1e-4, method, 1.0 / 60);
         scene.gravity = glm::dvec3(0.0);
@@ -128,7 +129,7 @@ TEST_CASE("a held cloth feels the whole wind in long steps under implicit Euler 
 
 TEST_CASE("a sheet that moves with the wind goes on as if there were no air") {
   const auto context = test::context();
-  for (const scene::Method method : scene::methods) {
+  for (const scene::Method method : test::tried_of(scene::methods)) {
     scene::Scene scene = sheet_in({{2.0, -1.0, 0.5}, 0.0, 0.0, 1.0, 0.2}, 0.1, method, 0.005);
     scene.gravity = glm::dvec3(0.0);
     scene.cloths[0].transform.rotate = {30.0, 20.0, 50.0};
@@ -146,7 +147,7 @@ TEST_CASE("a sheet that moves with the wind goes on as if there were no air") {
 
 TEST_CASE("in a gusting wind the GPU is where the double-precision reference is, under every method") {
   const auto context = test::context();
-  for (const scene::Method method : scene::methods) {
+  for (const scene::Method method : test::tried_of(scene::methods)) {
     const int steps = 60;
     scene::Scene scene = billowing(method, scene::any_step_is_stable(method) ? 0.004 : 0.002);
     if (method == scene::Method::explicit_euler) scene.cloths[0].springs().damping = 0.05;
@@ -193,7 +194,7 @@ TEST_CASE("each method keeps its order in a gusting wind") {
     return stepped.state().position;
   };
   const auto truth = position(scene::Method::rk4, 2048);
-  for (const scene::Method method : scene::methods) {
+  for (const scene::Method method : test::tried_of(scene::methods)) {
     if (method == scene::Method::pbd) continue;  // its stiffness depends on dt
     const int coarse = scene::facts(method).order == 4 ? 16 : 64;
     const double first = reference::rms_distance(position(method, coarse), truth),
@@ -205,7 +206,7 @@ TEST_CASE("each method keeps its order in a gusting wind") {
 
 TEST_CASE("the same wind gives the same bits, however the steps are grouped, and other bits than none") {
   const auto context = test::context();
-  for (const scene::Method method : scene::methods) {
+  for (const scene::Method method : test::tried_of(scene::methods)) {
     scene::Scene scene = billowing(method, 0.002);
     scene.solver.iterations = 4;
     const auto hash = [&](const std::vector<std::uint32_t>& batches) {

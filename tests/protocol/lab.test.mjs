@@ -1,6 +1,7 @@
 // The lab over a socket: jobs on a small cloth, beside the session that shows it.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
+import { thoroughTest } from "../thorough.mjs";
 import { Client, Server, sleep } from "./harness.mjs";
 import { strip as stripOf } from "./strip.mjs";
 
@@ -64,7 +65,7 @@ test("a chart arrives point by point, is finished, and can be exported as JSON, 
   await client.close();
 });
 
-test("a sheet of finite elements is charted, mapped, chosen for and simplified, all but by pbd", async () => {
+thoroughTest("a sheet of finite elements is charted, mapped, chosen for and simplified, all but by pbd", async () => {
   const client = await enter();
   const sheet = { model: "fem", warp: 40, weft: 60, poisson: 0.2, shear: 10, bending: 1e-5, damping: 0.01 };
   const scene = { ...strip, cloths: [{ ...strip.cloths[0], material: sheet }] };

@@ -324,8 +324,8 @@ test("sixty who download and read nothing share one copy of a recording, of its 
   const { bytes, files } = await client.request("record.get");
   assert.ok(bytes > 1_500_000, `${bytes}`);
   for (const [path, share] of [
-    [files.clothlab, 1],
     [files.html, 4 / 3], // in base64
+    [files.clothlab, 1],
   ]) {
     const first = await stalled(path); // which has the page made
     const before = residentBytes(server);

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
+import { some } from "../thorough.mjs";
 import { Client, Server, sleep } from "./harness.mjs";
 
 // A cloth that hangs straight down from the start: the motion by its own weight is damped away within a second.
@@ -76,7 +77,7 @@ test("any change wakes a cloth that sleeps: a patch, reset, play, speed, another
   await client.request("stream.subscribe", { rate: 30 });
   const changes = [
     ["scene.patch", { patch: { gravity: [1, -9, 0] } }],
-    ["scene.patch", { patch: { wind: { velocity: [0, 0, 4] } } }],
+    ...some([["scene.patch", { patch: { wind: { velocity: [0, 0, 4] } } }]], 0),
     ["sim.reset", {}],
     ["sim.play", {}],
     ["sim.speed", { factor: 2 }],
