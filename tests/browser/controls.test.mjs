@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import { browserTest, eventually, withServer } from "./browser.mjs";
 
-const { both } = withServer();
+const here = withServer();
+const { both } = here;
 
 browserTest(
   "a slider dragged by mouse changes the server's scene; the last value arrives, few messages are sent",
@@ -313,6 +314,42 @@ browserTest("pause pauses, step steps once, reset goes back to 0, and keys do th
   );
   await page.keyboard.press(" ");
   await stopped();
+  await client.close();
+});
+
+browserTest("a status from before the server has heard of a pause does not turn the button back", async () => {
+  const { viewer, client } = await both("late-status");
+  let held = null;
+  let statuses = 0;
+  const late = await (await viewer.page.context().browser().newContext()).newPage();
+  await late.routeWebSocket(/\/ws/, (socket) => {
+    const server = socket.connectToServer();
+    socket.onMessage((message) => {
+      if (String(message).includes("sim.pause")) held = () => server.send(message);
+      else server.send(message);
+    });
+    server.onMessage((message) => {
+      if (typeof message === "string" && message.includes("sim.status")) statuses += 1;
+      socket.send(message);
+    });
+  });
+  await late.goto(`http://${here.server.host}/?session=late-status`);
+  await late.getByRole("button", { name: "Pause" }).click();
+  await eventually(
+    "the pause is on its way",
+    async () => held,
+    (send) => send !== null,
+  );
+  const before = statuses;
+  await eventually(
+    "statuses of a cloth that plays",
+    async () => statuses,
+    (count) => count > before + 10, // of ten a second: what the page waited for by the clock was 0.4 s
+  );
+  assert.equal(await late.locator("#play").getAttribute("aria-label"), "Play");
+  held();
+  await client.nextNotification("sim.status", (status) => status.playing === false);
+  assert.equal(await late.locator("#play").getAttribute("aria-label"), "Play");
   await client.close();
 });
 

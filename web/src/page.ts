@@ -62,7 +62,7 @@ export class Page {
   private readonly session = new URLSearchParams(location.search).get("session") ?? "main";
   private readonly connection = new Connection(this.session, this.linkEvents());
   private readonly link = new LinkView(this.connection);
-  private readonly transport = new Transport({ request: (method, params) => this.request(method, params) });
+  private readonly transport = new Transport({ request: (method, params) => this.answered(method, params) });
   private readonly undo: Undo = new Undo({
     request: (method, params) => this.connection.request(method, params),
     settled: (longest) => this.store.settled(longest),
@@ -527,8 +527,13 @@ export class Page {
   }
 
   private request(method: string, params: Params = {}): void {
-    this.connection
-      .request(method, params)
-      .catch((error: Error) => this.refusals.tell("The server refused this", error));
+    void this.answered(method, params);
+  }
+
+  private answered(method: string, params: Params = {}): Promise<void> {
+    return this.connection.request(method, params).then(
+      () => undefined,
+      (error: Error) => this.refusals.tell("The server refused this", error),
+    );
   }
 }

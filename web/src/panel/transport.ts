@@ -3,25 +3,25 @@ import { button, element } from "./dom";
 import type { Status } from "./hud";
 
 export interface TransportEvents {
-  request(method: string, params?: Record<string, unknown>): void;
+  /// Settles once the server has answered, also if it refuses.
+  request(method: string, params?: Record<string, unknown>): Promise<void>;
 }
 
 export class Transport {
   playing = true;
   private readonly play = button("play");
   private readonly speed = element("speed", HTMLSelectElement);
-  // until then a status may be older than this page's request and would flip the button back
-  private readonly holdUntil = { playing: 0, speed: 0 };
+  // This page's requests that the server has not answered: a status that comes before may be older than they are.
+  private readonly unanswered = { playing: 0, speed: 0 };
 
   constructor(private readonly events: TransportEvents) {
     this.play.onclick = () => this.toggle();
     button("step").onclick = () => this.step();
     button("reset").onclick = () => this.reset();
     this.speed.onchange = () => {
-      this.holdUntil.speed = performance.now() + 400;
-      this.events.request("sim.speed", { factor: Number(this.speed.value) });
+      this.ask("speed", "sim.speed", { factor: Number(this.speed.value) });
     };
-    this.show();
+    this.show(true);
   }
 
   enable(enabled: boolean): void {
@@ -29,43 +29,41 @@ export class Transport {
   }
 
   toggle(): void {
-    this.events.request(this.playing ? "sim.pause" : "sim.play");
-    this.assume(!this.playing);
+    if (this.playing) this.stop();
+    else this.start();
   }
 
   start(): void {
-    if (!this.playing) this.toggle();
+    this.ask("playing", "sim.play");
+    this.show(true);
   }
 
   stop(): void {
-    if (this.playing) this.toggle();
+    this.ask("playing", "sim.pause");
+    this.show(false);
   }
 
   step(): void {
-    this.events.request("sim.step", { steps: 1 });
-    this.assume(false);
+    this.ask("playing", "sim.step", { steps: 1 });
+    this.show(false);
   }
 
   reset(): void {
-    this.events.request("sim.reset");
+    void this.events.request("sim.reset");
   }
 
-  status(status: Status): void {
-    const now = performance.now();
-    if (status.playing !== undefined && now > this.holdUntil.playing && status.playing !== this.playing) {
-      this.playing = status.playing;
-      this.show();
-    }
-    if (status.speed !== undefined && now > this.holdUntil.speed) this.showSpeed(status.speed);
+  status({ playing, speed }: Status): void {
+    if (playing !== undefined && playing !== this.playing && this.unanswered.playing === 0) this.show(playing);
+    if (speed !== undefined && this.unanswered.speed === 0) this.showSpeed(speed);
   }
 
-  private assume(playing: boolean): void {
+  private ask(what: "playing" | "speed", method: string, params?: Record<string, unknown>): void {
+    ++this.unanswered[what];
+    void this.events.request(method, params).then(() => --this.unanswered[what]);
+  }
+
+  private show(playing: boolean): void {
     this.playing = playing;
-    this.holdUntil.playing = performance.now() + 400;
-    this.show();
-  }
-
-  private show(): void {
     this.play.dataset.playing = String(this.playing);
     this.play.setAttribute("aria-label", this.playing ? "Pause" : "Play");
   }
