@@ -29,7 +29,6 @@ async function dropped(session) {
       ([vertices, step]) => vertices === sheet.vertices && step >= more,
     );
   await shown(0);
-  await opened.client.request("sim.play");
   await shown(4);
   await opened.client.request("stream.subscribe", { encoding: "f32", rate: 30 });
   return opened;
