@@ -44,8 +44,8 @@ browserTest("a picture has the size that is chosen, its subject in the middle, a
   const viewer = await here.open({ session: "save-picture", width: 1280, height: 800, sharp: true });
   const { page } = viewer;
   await viewer.until(() => window.clothlab.simTime > 0.5);
+  await viewer.pause(); // before the card of figures has the focus, whose key Space is then
   await viewer.figures();
-  await viewer.pause();
   const time = await viewer.read("simTime");
   const onPage = await picture(viewer);
   assert.equal(onPage.name, `seed-${time.toFixed(2)}s.png`);
