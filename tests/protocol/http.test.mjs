@@ -13,7 +13,7 @@ import gltf from "gltf-validator";
 import { Client, Server, sleep, withTimeout } from "./harness.mjs";
 
 async function eventually(look, good, what) {
-  for (let tries = 0; tries < 3000; ++tries) {
+  for (let tries = 0; tries < 12000; ++tries) {
     if (good(await look())) return;
     await sleep(10);
   }
