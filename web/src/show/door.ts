@@ -12,6 +12,8 @@ export interface Cause {
   /// Resolves when the scene stands that will fail. `limit` waits for the longest stable step [s] of the scene as it is
   /// then.
   apply(limit: () => Promise<number>): Promise<unknown>;
+  /// Makes it worse: the scene has held for a while.
+  more?: () => Promise<unknown>;
   failed?: SceneDocument; ///< it has failed already, as this scene: the show goes back and looks again
 }
 

@@ -25,7 +25,7 @@ export class Provoked {
   beyondLimit(): void {
     const limit = this.host.limit();
     if (typeof limit === "number") {
-      this.host.begin({ apply: () => this.stepsBeyond(limit) });
+      this.host.begin({ apply: () => this.stepsBeyond(limit), more: () => this.longerSteps() });
       return;
     }
     const name = methodText(this.host.stored()?.solver.method ?? "").name;
@@ -62,9 +62,18 @@ export class Provoked {
     });
   }
 
-  // Where no step is stable, the present one fails, too.
+  // Where no step is stable, the present one fails, too, if slowly.
   private async stepsBeyond(limit: number): Promise<void> {
-    if (limit > 0)
-      await this.host.request("scene.patch", { patch: { solver: { dt: beyond(limit) } }, name: "Blow up: time step" });
+    if (limit > 0) await this.step(beyond(limit));
+  }
+
+  /// Beyond the limit of explicit Euler the fastest vibration grows with the square of the step.
+  private async longerSteps(): Promise<void> {
+    const { document } = await this.host.request<{ document: SceneDocument }>("scene.get", {});
+    await this.step(2 * document.solver.dt);
+  }
+
+  private step(dt: number): Promise<unknown> {
+    return this.host.request("scene.patch", { patch: { solver: { dt } }, name: "Blow up: time step" });
   }
 }

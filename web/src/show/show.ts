@@ -11,6 +11,7 @@ import type { Status } from "../panel/hud";
 import { type Diverged, notice } from "../panel/notices";
 
 const stepsAtOnce = 32; // while the blow-up is looked for
+const stepsBetween = 128; // before the cause is asked for more: explicit Euler grows by less than 1 % in a step
 const mostSeconds = 20; // of looking for it
 const before = 28; // moments from the first that is shown to the last good one
 const most = 80; // moments
@@ -54,18 +55,18 @@ export class Show {
     private readonly gone: () => void,
   ) {}
 
-  async run({ apply, failed }: Cause): Promise<void> {
+  async run(cause: Cause): Promise<void> {
     this.host.opened();
     document.body.classList.add("showing");
     this.card.say("Looking for the step at which it fails …");
     try {
-      const from = failed ? await this.earlier() : await this.provoke(apply);
+      const from = cause.failed ? await this.earlier() : await this.provoke(cause);
       if (this.closed) return;
       if (from === null) {
         this.holds();
         return;
       }
-      await this.gather(from, failed);
+      await this.gather(from, cause.failed ?? (await this.scene()));
       if (!this.closed) this.present();
     } catch (error) {
       this.close();
@@ -104,16 +105,23 @@ export class Show {
   }
 
   /// Has it blow up, and returns from which step on it is looked at again; null: it has held.
-  private async provoke(apply: Cause["apply"]): Promise<number | null> {
+  private async provoke({ apply, more }: Cause): Promise<number | null> {
     await this.host.request("sim.pause");
     await apply(() => this.limit());
-    const start = (await this.presentStep()).step;
+    let start = (await this.presentStep()).step;
     const until = performance.now() + 1000 * mostSeconds;
-    while (!this.blown && !this.closed && performance.now() < until) await this.step(stepsAtOnce);
+    for (let steps = 0; !this.blown && !this.closed && performance.now() < until; steps += stepsAtOnce) {
+      if (more && steps === stepsBetween) {
+        await more();
+        start = (await this.presentStep()).step;
+        steps = 0;
+      }
+      await this.step(stepsAtOnce);
+    }
     if (!this.blown) return null;
     const good = (await this.presentStep()).step;
     this.stride = Math.max(1, Math.floor((good - start) / 2 / before));
-    return Math.max(start, good - before * this.stride);
+    return Math.min(good, Math.max(start, good - before * this.stride));
   }
 
   /// Of a session that has blown up already.
@@ -126,7 +134,11 @@ export class Show {
     return (await this.host.request<{ newest: Where }>("timeline.get")).newest;
   }
 
-  /// False: it has blown up.
+  private async scene(): Promise<SceneDocument> {
+    return (await this.host.request<{ document: SceneDocument }>("scene.get")).document;
+  }
+
+  /// Null: it has blown up.
   private async step(steps: number): Promise<Where | null> {
     try {
       return await this.host.request<Where>("sim.step", { steps });
@@ -138,11 +150,10 @@ export class Show {
   }
 
   /// Goes back, and takes the steps again until it blows up.
-  private async gather(from: number, failed: Cause["failed"]): Promise<void> {
+  private async gather(from: number, failed: SceneDocument): Promise<void> {
     this.blown = null;
     await this.host.request("timeline.resume", { step: from });
-    const { document } = await this.host.request<{ document: SceneDocument }>("scene.get");
-    if (failed && JSON.stringify(document) !== JSON.stringify(failed)) {
+    if (JSON.stringify(await this.scene()) !== JSON.stringify(failed)) {
       // What made it fail came later than the step gone back to.
       const whole: Operation[] = [{ op: "replace", path: "", value: failed }];
       await this.host.request("scene.patch", { patch: whole, name: "Blow up again" });
