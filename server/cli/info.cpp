@@ -24,7 +24,7 @@ void print_data_folder(const std::string& what, const std::string& file) {
 }
 
 /// "24.6 GB of memory"
-std::string memory_text(const gl::Device& device) {
+std::string device_memory_text(const gl::Device& device) {
   if (device.memory == 0) return "memory not told by the driver";
   return formatted("%.1f GB of memory", 1e-9 * static_cast<double>(device.memory));
 }
@@ -33,7 +33,7 @@ void print_device(const gl::Device& device, bool used) {
   std::cout << (used ? "* " : "  ") << device.index << ": ";
   if (device.usable)
     std::cout << device.name << ", OpenGL " << device.version << (device.software ? " (software), " : ", ")
-              << memory_text(device);
+              << device_memory_text(device);
   else
     std::cout << "not usable: " << device.problem;
   if (!device.node.empty()) std::cout << ", " << device.node;

@@ -1,8 +1,10 @@
 #include "server/gl/program.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <regex>
 #include <set>
@@ -28,6 +30,10 @@ struct Source {
   void add_line(const std::string& line, const std::string& origin) {
     text += line + "\n";
     origins.push_back(origin);
+  }
+  void add(const Source& other) {
+    text += other.text;
+    origins.insert(origins.end(), other.origins.begin(), other.origins.end());
   }
 };
 
@@ -142,12 +148,39 @@ std::string info_log(GLuint id, Get get, GetLog get_log) {
   return log;
 }
 
+void add_words(const std::string& text, std::set<std::string, std::less<>>& words) {
+  const auto of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  for (auto at = text.begin(); (at = std::find_if(at, text.end(), of_word)) != text.end();) {
+    const auto end = std::find_if_not(at, text.end(), of_word);
+    words.emplace(at, end);
+    at = end;
+  }
+}
+
+/// The definitions that this text, or the value of another one of them, names. Scenes that differ in the
+/// others alone have the same program, which the driver's cache knows.
+Defines named_in(const std::string& text, Defines defines) {
+  std::set<std::string, std::less<>> words;
+  add_words(text, words);
+  auto end = defines.begin();  // of those that are named
+  const auto named = [&](const auto& define) {
+    return words.contains(std::string_view(define.first).substr(0, define.first.find('(')));
+  };
+  for (auto begin = end; (end = std::stable_partition(begin, defines.end(), named)) != begin; begin = end)
+    std::for_each(begin, end, [&](const auto& define) { add_words(define.second, words); });
+  defines.erase(end, defines.end());
+  return defines;
+}
+
 Result<GLuint> compile(const std::string& path, const Defines& defines, Reads reads, Source& source) {
+  Source body;
+  if (Status status = Expansion(body, defines).add(path); !status) return status.error();
   const std::string prologue = "shaders/" + path + ":0";
   source.add_line("#version 450 core", prologue);
   if (reads == Reads::storage) source.add_line("#define READ_STORAGE", prologue);
-  for (const auto& [name, value] : defines) source.add_line("#define " + name + " " + value, prologue);
-  if (Status status = Expansion(source, defines).add(path); !status) return status.error();
+  for (const auto& [name, value] : named_in(body.text, defines))
+    source.add_line("#define " + name + " " + value, prologue);
+  source.add(body);
 
   const GLuint shader = glCreateShader(stage_of(path));
   const char* text = source.text.c_str();

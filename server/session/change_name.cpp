@@ -13,7 +13,7 @@ std::string words(std::string key) {
   return key;
 }
 
-std::string title(const std::string& key) {
+std::string title_of(const std::string& key) {
   if (key == "dt") return "Time step";
   if (key == "self_collision") return "Self-collision";
   std::string text = words(key);
@@ -39,11 +39,12 @@ class Comparison {
   void scenes(const json& before, const json& after) {
     each_difference(before, after, [&](const std::string& key, const json& was, const json& is) {
       if ((key == "cloths" || key == "colliders") && was.is_array() && is.is_array())
-        lists(title(key), was, is);
+        lists(title_of(key), was, is);
       else if (key == "solver")
-        each_difference(was, is, [&](const std::string& of, const json&, const json&) { note(title(of)); });
+        each_difference(was, is,
+                        [&](const std::string& of, const json&, const json&) { note(title_of(of)); });
       else
-        members(title(key), was, is);
+        members(title_of(key), was, is);
     });
   }
 

@@ -44,7 +44,7 @@ constexpr std::size_t bytes_of_pair =
     16 * texels_of_pair + 16 + 4 * 8 + 2 * 4 * 4;  // as `make_lists` makes them
 
 /// So many layers that lie on each other are to be within a twentieth of the thickness of it.
-constexpr double layers = 10.0, gravity_at_least = 9.81;
+constexpr double layers = 10.0;
 /// Slower than this is no sliding [m/s]: what lies still creeps by less.
 constexpr float still_speed = 2e-4f;
 

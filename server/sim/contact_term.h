@@ -24,6 +24,9 @@
 
 namespace clothlab::sim {
 
+/// Lengths that come from a scene's pull come at least from this one [m/s²]: a scene may have none.
+constexpr double gravity_at_least = 9.81;
+
 /// The second derivative of a pair's energy [N/m]: `stiffness` times the products of its corners' weights.
 struct PressingPair {
   std::array<std::uint32_t, 4> vertices{};  ///< those of bodies are not less than the cloths' number

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/sim/contact_term.h"
 #include "server/sim/implicit_passes.h"
 #include "server/sim/surface_contact.h"
 
@@ -19,10 +20,10 @@ namespace {
 /// Newton steps of a time step with contact, at most: crushed layers take that many. Where contact presses
 /// they go on until one moves no vertex farther than this share of a cloth's mean edge.
 constexpr int most_contact_steps = 40;
-constexpr double solved_share = 0.05;
+constexpr double step_solved_share = 0.05;
 /// The last one is to be taken but for less than this share of what gravity lets fall in a step: what is not
 /// taken is lost for the velocity. Where nothing is near, one that moves no vertex farther is the last, too.
-constexpr double untaken_share = 0.02, gravity_at_least = 9.81;
+constexpr double untaken_share = 0.02;
 /// And until the friction of all pairs together is off by no more than this share of it.
 constexpr double slips_share = 0.03;
 /// `solve` goes on with contact until this share of those ways is left.
@@ -41,7 +42,7 @@ class ImplicitEuler : public ImplicitPasses {
   void set_parameters(const Surroundings& around) override {
     ImplicitPasses::set_parameters(around);
     most_newton_steps_ = around.scene.solver.iterations;
-    solved_way_ = solved_share * SurfacePairs::finest_edge(around.model);
+    solved_way_ = step_solved_share * SurfacePairs::finest_edge(around.model);
     untaken_way_ = std::min(0.1 * solved_way_, untaken_share * gravity_at_least * dt_ * dt_);
     set_tolerance(around.scene.solver.tolerance);
   }

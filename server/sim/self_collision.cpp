@@ -38,8 +38,8 @@ constexpr std::chrono::milliseconds long_dispatch{10};
 
 constexpr std::uint64_t updates_between_looks = 8;
 constexpr std::uint32_t most_slots = 256;
-constexpr std::uint64_t most_entries = std::uint64_t{1} << 22;  // in all lists: 32 MiB, and time to read them
-constexpr std::uint32_t chain_end = 0xffffffffu;                // as in cells.glsl
+constexpr std::uint64_t most_slots_in_all = std::uint64_t{1} << 22;  // 32 MiB, and time to read them
+constexpr std::uint32_t chain_end = 0xffffffffu;                     // as in cells.glsl
 
 }  // namespace
 
@@ -251,7 +251,7 @@ void SelfCollision::read_counters() {
 std::uint32_t SelfCollision::slots_needed() const {
   if (4 * std::uint64_t{longest_} <= 3 * std::uint64_t{slots_}) return slots_;
   const std::uint64_t wanted = std::bit_ceil(std::uint64_t{longest_} * 3 / 2);
-  const bool too_many = wanted > most_slots || wanted * vertex_count_ > most_entries;
+  const bool too_many = wanted > most_slots || wanted * vertex_count_ > most_slots_in_all;
   return too_many ? slots_ : std::max(slots_, static_cast<std::uint32_t>(wanted));
 }
 

@@ -17,7 +17,7 @@ constexpr int calls = 20;
 
 /// Adapts the number of steps that are queued at once to the wall time that they take, so that a cancelled
 /// job ends soon even on a large cloth.
-class Pace {
+class TrialPace {
  public:
   int next() const { return count_; }
   void took(double seconds) {
@@ -41,7 +41,7 @@ Result<EnergyTrial> run_trial(sim::Simulation& simulation, int steps, const std:
   guard.start(model::no_limit, stable_swing);
   EnergyTrial trial;
   trial.dt = simulation.scene().solver.dt;
-  Pace pace;
+  TrialPace pace;
   for (int done = 0, looks = 0; done < steps;) {
     const int look_at = std::min(steps, done + look_every);
     while (done < look_at) {

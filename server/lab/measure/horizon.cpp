@@ -14,7 +14,7 @@ constexpr double perturbation = 1e-7;  // of the copy's start, RMS over the size
 /// The horizon is where the perturbation has grown by this factor. There chaos alone turns an error of 1e-4
 /// into one of 1e-2.
 constexpr double growth_by_chaos = 100.0;
-constexpr int fewest_looks = 4;  // to the horizon
+constexpr int fewest_looks_to_horizon = 4;  // to the horizon
 
 reference::State perturbed_start(const reference::World& world, double size) {
   reference::State state = reference::at_rest(world);
@@ -42,7 +42,7 @@ bool Horizon::look(const reference::State& motion, double time) {
 }
 
 double Horizon::time(double whole) const {
-  return time_ < fewest_looks * whole / looks_for_horizon ? 0.0 : time_;
+  return time_ < fewest_looks_to_horizon * whole / looks_for_horizon ? 0.0 : time_;
 }
 
 std::string Horizon::reason(double whole) const {
@@ -51,7 +51,7 @@ std::string Horizon::reason(double whole) const {
   if (time(whole) == 0.0)
     return "The motion is chaotic at once: " + copy + " is more than " +
            with_significant_digits(growth_by_chaos, 3) + " times as far away after " +
-           with_significant_digits(fewest_looks * whole / looks_for_horizon, 3) + " s.";
+           with_significant_digits(fewest_looks_to_horizon * whole / looks_for_horizon, 3) + " s.";
   if (time_ < whole)
     return "Positions are compared at " + with_significant_digits(time_, 3) + " s: " + copy + " is up to " +
            with_significant_digits(amplified_, 3) + " times as far away until then, and over " +
