@@ -1,10 +1,13 @@
 // `clothlab render S --time T --out F.png`: simulates up to a moment and draws it, without a window.
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <utility>
 
+#include "server/cli/camera_option.h"
 #include "server/cli/commands.h"
 #include "server/cli/state_files.h"
 #include "server/cli/stepping.h"
@@ -18,6 +21,7 @@ struct RenderOptions {
   SceneChoice scene;
   double time = 0;  // [s]
   std::string out, size = "1280x720";
+  std::optional<std::string> camera;
   std::optional<int> gpu;
 };
 
@@ -25,8 +29,13 @@ struct Size {
   int width = 0, height = 0;  // [pixels]
 };
 
+constexpr std::array<std::pair<const char*, Size>, 3> named_sizes{
+    {{"1080p", {1920, 1080}}, {"4K", {3840, 2160}}, {"square", {1080, 1080}}}};
+
 Result<Size> parse_size(const std::string& text) {
-  const Error malformed{"--size", text, "WIDTHxHEIGHT in pixels, e.g. 1280x720"};
+  for (const auto& [name, size] : named_sizes)
+    if (text == name) return size;
+  const Error malformed{"--size", text, "WIDTHxHEIGHT in pixels, e.g. 1280x720, or 1080p, 4K or square"};
   Size size;
   const char* end = text.data() + text.size();
   const std::from_chars_result width = std::from_chars(text.data(), end, size.width);
@@ -47,13 +56,14 @@ Result<Size> check_outputs(const RenderOptions& options) {
   return size;
 }
 
-Status draw(sim::Simulation& simulation, Size size, const std::string& path) {
+Status draw(sim::Simulation& simulation, Size size, const CameraChoice& camera, const std::string& path) {
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
   if (!renderer) return renderer.error();
   const std::vector<glm::vec3> positions = simulation.read_state().position;
   const std::vector<scene::Collider> colliders = simulation.colliders_now();
-  const Result<render::Image> image = (*renderer)->render(
-      {simulation.scene(), simulation.model(), positions, colliders}, size.width, size.height);
+  const render::DrawnMoment moment{simulation.scene(), simulation.model(), positions,
+                                   colliders,          camera.subject,     camera.view};
+  const Result<render::Image> image = (*renderer)->render(moment, size.width, size.height);
   if (!image) return image.error();
   const Result<std::vector<std::uint8_t>> png = render::encode_png(*image);
   if (!png) return png.error();
@@ -63,10 +73,15 @@ Status draw(sim::Simulation& simulation, Size size, const std::string& path) {
 int render_scene(const RenderOptions& options) {
   const Result<Size> size = check_outputs(options);
   if (!size) return fail(size.error(), exit_usage);
+  const Result<CameraChoice> camera =
+      options.camera ? parse_camera(*options.camera) : Result<CameraChoice>(CameraChoice{});
+  if (!camera) return fail(camera.error(), exit_usage);
   int exit_code = exit_done;
   const std::optional<Prepared> prepared = prepare(options.scene, options.gpu, exit_code);
   if (!prepared) return exit_code;
   sim::Simulation& simulation = *prepared->simulation;
+  if (Status there = check_subject(*camera, simulation.scene()); !there)
+    return fail(there.error(), exit_usage);
   const double dt = simulation.scene().solver.dt;
   const Result<std::uint64_t> steps = whole_steps("--time", options.time, dt);
   if (!steps) return fail(steps.error(), exit_usage);
@@ -74,7 +89,8 @@ int render_scene(const RenderOptions& options) {
   const Result<Progress> progress =
       advance(*prepared, *steps, std::max<std::uint64_t>(*steps, 1), nothing_to_do);
   if (!progress) return fail(progress.error(), exit_internal);
-  if (Status drawn = draw(simulation, *size, options.out); !drawn) return fail(drawn.error(), exit_internal);
+  if (Status drawn = draw(simulation, *size, *camera, options.out); !drawn)
+    return fail(drawn.error(), exit_internal);
   std::cout << options.out << ": " << options.size << ", " << simulation.scene().name << " at "
             << progress->state.time << " s\n";
   return exit_after(*progress);
@@ -91,9 +107,14 @@ void add_render(CLI::App& app, int& exit_code) {
       ->required()
       ->type_name("T");
   command->add_option("--out", options->out, "the picture (.png)")->required()->type_name("F");
-  command->add_option("--size", options->size, "pixels")->type_name("WxH")->capture_default_str();
+  command->add_option("--size", options->size, "pixels, or 1080p, 4K, square")
+      ->type_name("WxH")
+      ->capture_default_str();
+  add_camera(*command, options->camera);
   add_gpu(*command, options->gpu);
-  command->footer("Example:\n  clothlab render seed --time 1.5 --out seed.png --size 1920x1080");
+  command->footer(
+      "Example:\n  clothlab render seed --time 1.5 --out seed.png --size 1080p\n"
+      "  clothlab render drape --time 1 --out ball.png --camera \"ball;from=2,1,2\"");
   command->callback([options, &exit_code] { exit_code = render_scene(*options); });
 }
 

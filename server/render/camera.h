@@ -1,8 +1,10 @@
-// Chooses a camera that has all of a box in its picture.
+// Chooses a camera that fills a picture with what it is of.
 #pragma once
 
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
+#include <span>
 
 namespace clothlab::render {
 
@@ -23,10 +25,23 @@ struct Camera {
   glm::mat4 view_projection{1.0f};  ///< world to clip space
 };
 
-/// Looks at the box's centre from the front, a little from the right and above, just far enough for all of
-/// the box to be in a picture of this aspect (width / height). An empty box counts as a cube around the
-/// origin with sides of 2 m.
-Camera frame(const Box& box, float aspect);
+/// A part of what a picture is of; a vertex has the radius 0.
+struct Ball {
+  glm::vec3 center{0.0f};  ///< [m], finite
+  float radius = 0;        ///< [m], finite
+};
+
+/// What is said of a camera. What is left out is chosen so that the subject fills the picture.
+struct View {
+  std::optional<glm::vec3> from{};  ///< the eye [m]; none: in front, a little to the right and above
+  std::optional<glm::vec3> to{};    ///< what is in the picture's middle [m]; none: the subject
+  std::optional<float> angle{};     ///< between the picture's lower and upper edge [degrees], in (0, 180)
+};
+
+/// A camera whose picture of this aspect (width / height) has all of the subject, in its middle and as large
+/// as a small margin allows. `all`: everything that is drawn. Without any ball the subject is a ball of 1 m
+/// around the origin.
+Camera frame(std::span<const Ball> subject, const Box& all, const View& view, float aspect);
 
 /// The parallel projection along the light that has all of the box in the shadow map. `to_light`: length 1.
 glm::mat4 light_view_projection(const Box& box, const glm::vec3& to_light);

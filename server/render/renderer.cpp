@@ -8,9 +8,9 @@
 #include "server/gl/program.h"
 #include "server/render/camera.h"
 #include "server/render/cloth_mesh.h"
+#include "server/render/outline.h"
 #include "server/render/solids.h"
 #include "server/render/target.h"
-#include "server/scene/solid.h"
 #include "shaders/slots.h"
 
 namespace clothlab::render {
@@ -62,12 +62,18 @@ Status Renderer::Implementation::load_programs() {
 
 void Renderer::Implementation::set_frame(const DrawnMoment& moment, float aspect) {
   Box box;
-  for (const glm::vec3& position : moment.positions) box.add(position);
-  for (const scene::Collider& collider : moment.colliders) {
-    const scene::Ball ball = scene::bounds(collider.shape);
-    if (std::isfinite(ball.radius)) box.add(glm::vec3(ball.center), static_cast<float>(ball.radius));
-  }
-  const Camera camera = frame(box, aspect);
+  std::vector<Ball> all, subject;
+  const auto add = [&](const Ball& ball, const std::string& of) {
+    if (!std::isfinite(ball.center.x + ball.center.y + ball.center.z + ball.radius)) return;
+    box.add(ball.center, ball.radius);
+    all.push_back(ball);
+    if (of == moment.subject) subject.push_back(ball);
+  };
+  for (std::size_t i = 0; i < moment.positions.size(); ++i)
+    add({moment.positions[i], 0.0f}, moment.scene.cloths[moment.model.vertex_cloth[i]].name);
+  for (const scene::Collider& collider : moment.colliders)
+    for (const Ball& ball : outline(collider.shape)) add(ball, collider.name);
+  const Camera camera = frame(subject.empty() ? all : subject, box, moment.view, aspect);
   const FrameBlock block{camera.view_projection, light_view_projection(box, to_light),
                          glm::vec4(camera.eye, 1), glm::vec4(to_light, 0),
                          glm::vec4(box.center(), box.radius())};

@@ -5,10 +5,13 @@
 
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "server/base/result.h"
 #include "server/model/model.h"
+#include "server/render/camera.h"
 #include "server/render/image.h"
 #include "server/scene/scene.h"
 
@@ -20,6 +23,9 @@ struct DrawnMoment {
   const model::Model& model;                      ///< of that scene
   const std::vector<glm::vec3>& positions;        ///< [vertex_count] [m]
   const std::vector<scene::Collider>& colliders;  ///< placed as at that moment
+  /// The name of the cloths and finite colliders that the picture is of; none, or of nothing: all of them.
+  std::optional<std::string> subject{};
+  View view{};
 };
 
 class Renderer {
@@ -28,9 +34,8 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> create();
   ~Renderer();
 
-  /// `width` x `height` pixels, each in [1, max_image_side], framed so that all of the moment's
-  /// cloths and finite colliders are seen. Waits for the GPU. A vertex that is not finite is left out of the
-  /// framing.
+  /// `width` x `height` pixels, each in [1, max_image_side], which the moment's subject fills unless its view
+  /// says otherwise. Waits for the GPU. A vertex that is not finite is left out of the framing.
   Result<Image> render(const DrawnMoment& moment, int width, int height);
 
  private:

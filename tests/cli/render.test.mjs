@@ -152,3 +152,81 @@ test("the colour is the scene's", () => {
   assert.equal(region(image, isRed).count, 0);
   assert.ok(region(image, ([r, g, b]) => b > 1.5 * r && b > 1.5 * g).count > 500);
 });
+
+// A cloth that lies at y = 1 m, a metre wide, and far from it a ball that makes it small in a picture of both.
+const apart = [
+  ...["seed", "--time", "0", "--set", "/cloths/0/pins=[]", "--set", "/cloths/0/name=sheet"],
+  ...["--set", '/colliders=[{"name": "far", "sphere": {"center": [6, 0, 0], "radius": 1}}]'],
+];
+const [width, height] = [240, 160];
+const small = ["--size", `${width}x${height}`];
+const filled = 1 / 1.08; // of the picture, in its tighter direction: the rest is margin
+
+/** How wide, how high and where a region is in its picture: 1 is all of it, 0 its middle. */
+function placeIn(image, { left, right, top, bottom }) {
+  return {
+    wide: (right + 1 - left) / image.width,
+    high: (bottom + 1 - top) / image.height,
+    aside: (left + right + 1) / image.width - 1,
+    below: (top + bottom + 1) / image.height - 1,
+  };
+}
+
+/** In the middle, and as large as the margin allows, but for pixels at each side that it may only touch. */
+function assertFills({ wide, high, aside, below }, what, touched = 1) {
+  const found = `${what}: ${JSON.stringify({ wide, high, aside, below })}`;
+  assert.ok(Math.abs(aside) <= 2 / width && Math.abs(below) <= 2 / height, found);
+  assert.ok(Math.abs(Math.max(wide, high) - filled) <= (2 * touched) / height, found);
+}
+
+test("the cloth or body that --camera names fills the picture, in its middle", () => {
+  const both = region(render("both.png", ...apart, ...small), isRed);
+  const image = render("sheet.png", ...apart, ...small, "--camera", "sheet");
+  const sheet = region(image, isRed);
+  assert.ok(sheet.count > 9 * both.count, JSON.stringify({ both, sheet }));
+  assertFills(placeIn(image, sheet), "sheet");
+  const far = render("far.png", ...apart, ...small, "--camera", "far");
+  assert.equal(region(far, isRed).count, 0, "the cloth is out of the picture");
+  const [corner, middle] = [far.at(3, 3), far.at(width / 2, height / 2)];
+  assert.ok(Math.max(...corner.map((value, i) => Math.abs(value - middle[i]))) > 20, `${corner} and ${middle}`);
+});
+
+test("where the camera stands, looks to, and its angle are as --camera says, and the rest is chosen", () => {
+  const cloth = (camera) => {
+    const image = render("seen.png", ...apart, ...small, "--camera", camera);
+    return placeIn(image, region(image, isRed));
+  };
+  const above = cloth("sheet;from=0,5,0.5");
+  assertFills(above, "from above");
+  assert.ok(Math.abs(above.wide * width - above.high * height) <= 2, `a square: ${JSON.stringify(above)}`);
+  assertFills(cloth("from=1.5,5,-1;sheet"), "from aside", 2); // the tips of corners cover less than a pixel
+  // 2 m at a distance of 4 m from the lower to the upper edge: the sheet's metre is half of that.
+  const angle = (360 / Math.PI) * Math.atan(1 / 4);
+  const half = cloth(`from=0,5,0.5;to=0,1,0.5;angle=${angle}`);
+  assert.ok(Math.abs(half.high - 0.5) <= 2 / height, JSON.stringify(half));
+  const moved = cloth(`from=0,5,0.5;to=0,1,0;angle=${angle}`);
+  assert.ok(Math.abs(moved.below - half.below) > 0.25, JSON.stringify({ half, moved }));
+});
+
+test("a camera of nothing, or that cannot be, is refused with what there is", () => {
+  const refused = (camera, message) => {
+    const { status, stderr } = clothlab(["render", ...apart, "--out", "no.png", "--camera", camera]);
+    assert.equal(status, 2, `${camera}: ${stderr}`);
+    assert.match(stderr, message);
+  };
+  for (const nobody of ["nobody", "sheet;far", "at=1,2,3", ""])
+    refused(nobody, new RegExp(`--camera: "${nobody}"; .*\\("sheet", "far"\\), or from=X,Y,Z`));
+  for (const place of ["from=1,2", "from=1,2,3,", "to=1,x,3", "to=1,2,1e7", "to=1,2,nan"])
+    refused(place, new RegExp(`--camera: "${place}"; three numbers`));
+  for (const angle of ["angle=0", "angle=x", "angle=151", "angle=1,2"])
+    refused(angle, new RegExp(`--camera: "${angle}"; .*at most 150 degrees`));
+  refused("from=1,2,3;to=1,2,3", /two places for from and to/);
+});
+
+test("sizes have names", () => {
+  const square = render("square.png", ...apart, "--size", "square");
+  assert.deepEqual([square.width, square.height], [1080, 1080]);
+  const { status, stderr } = clothlab(["render", ...apart, "--out", "no.png", "--size", "2K"]);
+  assert.equal(status, 2);
+  assert.match(stderr, /--size: 2K; .*1080p, 4K or square/);
+});
