@@ -22,6 +22,7 @@ struct RenderOptions {
   double time = 0;  // [s]
   std::string out, size = "1280x720";
   std::optional<std::string> camera;
+  bool clear = false;
   std::optional<int> gpu;
 };
 
@@ -56,18 +57,19 @@ Result<Size> check_outputs(const RenderOptions& options) {
   return size;
 }
 
-Status draw(sim::Simulation& simulation, Size size, const CameraChoice& camera, const std::string& path) {
+Status draw(sim::Simulation& simulation, Size size, const CameraChoice& camera,
+            const RenderOptions& options) {
   Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
   if (!renderer) return renderer.error();
   const std::vector<glm::vec3> positions = simulation.read_state().position;
   const std::vector<scene::Collider> colliders = simulation.colliders_now();
-  const render::DrawnMoment moment{simulation.scene(), simulation.model(), positions,
-                                   colliders,          camera.subject,     camera.view};
+  const render::DrawnMoment moment{simulation.scene(), simulation.model(), positions,    colliders,
+                                   camera.subject,     camera.view,        options.clear};
   const Result<render::Image> image = (*renderer)->render(moment, size.width, size.height);
   if (!image) return image.error();
   const Result<std::vector<std::uint8_t>> png = render::encode_png(*image);
   if (!png) return png.error();
-  return write_file(path, std::string(png->begin(), png->end()));
+  return write_file(options.out, std::string(png->begin(), png->end()));
 }
 
 int render_scene(const RenderOptions& options) {
@@ -89,7 +91,7 @@ int render_scene(const RenderOptions& options) {
   const Result<Progress> progress =
       advance(*prepared, *steps, std::max<std::uint64_t>(*steps, 1), nothing_to_do);
   if (!progress) return fail(progress.error(), exit_internal);
-  if (Status drawn = draw(simulation, *size, *camera, options.out); !drawn)
+  if (Status drawn = draw(simulation, *size, *camera, options); !drawn)
     return fail(drawn.error(), exit_internal);
   std::cout << options.out << ": " << options.size << ", " << simulation.scene().name << " at "
             << progress->state.time << " s\n";
@@ -111,6 +113,8 @@ void add_render(CLI::App& app, int& exit_code) {
       ->type_name("WxH")
       ->capture_default_str();
   add_camera(*command, options->camera);
+  command->add_flag("--clear", options->clear,
+                    "without background: transparent beside the scene; a plane is only the shadow on it");
   add_gpu(*command, options->gpu);
   command->footer(
       "Example:\n  clothlab render seed --time 1.5 --out seed.png --size 1080p\n"

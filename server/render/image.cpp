@@ -20,8 +20,8 @@ Result<std::vector<std::uint8_t>> encode_png(const Image& image) {
     auto* out = static_cast<std::vector<std::uint8_t>*>(to);
     out->insert(out->end(), first, first + size);
   };
-  if (!stbi_write_png_to_func(append, &bytes, image.width, image.height, 3, image.pixels.data(),
-                              3 * image.width))
+  if (!stbi_write_png_to_func(append, &bytes, image.width, image.height, image.channels, image.pixels.data(),
+                              image.channels * image.width))
     return Error{"PNG", "the image could not be encoded",
                  "there may be too little memory: try a smaller size"};
   return bytes;

@@ -11,8 +11,10 @@ namespace clothlab::render {
 inline constexpr int max_image_side = 4096;  ///< [pixels]
 
 struct Image {
-  int width = 0, height = 0;         ///< [pixels]
-  std::vector<std::uint8_t> pixels;  ///< RGB, sRGB-encoded, [height, width, 3], top row first
+  int width = 0, height = 0;  ///< [pixels]
+  /// sRGB-encoded RGB, or RGBA of a picture without background: [height, width, channels], top row first.
+  std::vector<std::uint8_t> pixels;
+  int channels = 3;
 };
 
 /// An error unless both sides are in [1, max_image_side].

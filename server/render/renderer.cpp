@@ -1,6 +1,7 @@
 #include "server/render/renderer.h"
 
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec4.hpp>
 
@@ -23,6 +24,7 @@ const glm::vec3 to_light = glm::normalize(glm::vec3(-0.45f, 1.0f, 0.6f));
 struct FrameBlock {
   glm::mat4 view_projection, light_view_projection;
   glm::vec4 eye, to_light, framed;
+  std::int32_t clear = 0, padding[3] = {};
 };
 
 }  // namespace
@@ -74,9 +76,9 @@ void Renderer::Implementation::set_frame(const DrawnMoment& moment, float aspect
   for (const scene::Collider& collider : moment.colliders)
     for (const Ball& ball : outline(collider.shape)) add(ball, collider.name);
   const Camera camera = frame(subject.empty() ? all : subject, box, moment.view, aspect);
-  const FrameBlock block{camera.view_projection, light_view_projection(box, to_light),
-                         glm::vec4(camera.eye, 1), glm::vec4(to_light, 0),
-                         glm::vec4(box.center(), box.radius())};
+  const FrameBlock block{
+      camera.view_projection, light_view_projection(box, to_light),  glm::vec4(camera.eye, 1),
+      glm::vec4(to_light, 0), glm::vec4(box.center(), box.radius()), moment.clear};
   frame_block.upload(&block, sizeof block);
   glBindBufferBase(GL_UNIFORM_BUFFER, block_frame, frame_block.id());
 }
@@ -96,12 +98,16 @@ void Renderer::Implementation::draw_shadow_map(const ClothMesh& cloth_mesh,
 
 void Renderer::Implementation::draw_picture(const DrawnMoment& moment, const ClothMesh& cloth_mesh) {
   shadow_map.bind_texture();
-  glDisable(GL_DEPTH_TEST);
-  background.use();
-  glBindVertexArray(empty_vertex_array);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glEnable(GL_DEPTH_TEST);
+  if (!moment.clear) {
+    glDisable(GL_DEPTH_TEST);
+    background.use();
+    glBindVertexArray(empty_vertex_array);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    glEnable(GL_DEPTH_TEST);
+  }
+  glDepthMask(!moment.clear);  // a shadow alone hides nothing
   solids.draw(Solids::Layer::ground, moment.colliders);
+  glDepthMask(GL_TRUE);
   glEnable(GL_CULL_FACE);
   solids.draw(Solids::Layer::body, moment.colliders);
   cloth.use();
@@ -130,7 +136,7 @@ Result<Image> Renderer::render(const DrawnMoment& moment, int width, int height)
   self.draw_shadow_map(cloth_mesh, moment.colliders);
   target->bind();
   self.draw_picture(moment, cloth_mesh);
-  Image image = target->read();
+  Image image = target->read(moment.clear);
 
   // Leaves nothing of the drawing bound, because other work may follow in this context.
   glDisable(GL_DEPTH_TEST);

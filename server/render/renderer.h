@@ -26,6 +26,7 @@ struct DrawnMoment {
   /// The name of the cloths and finite colliders that the picture is of; none, or of nothing: all of them.
   std::optional<std::string> subject{};
   View view{};
+  bool clear = false;  ///< without background: planes are only the shadows on them
 };
 
 class Renderer {

@@ -149,7 +149,7 @@ struct Solids::Implementation {
     plane.use();
     glBindVertexArray(empty_array);
     glEnable(GL_BLEND);
-    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glUniform3fv(uniform_point, 1, glm::value_ptr(glm::vec3(shape.point)));
     glUniform3fv(uniform_normal, 1, glm::value_ptr(glm::vec3(shape.normal)));
     glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace clothlab::render {
 
@@ -15,6 +16,14 @@ constexpr GLsizei shadow_side = 2048;  // [pixels]
 
 bool complete(GLuint framebuffer) {
   return glCheckNamedFramebufferStatus(framebuffer, GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE;
+}
+
+/// From colours that are multiplied by their opacity to those of a PNG, which are not.
+void divide_by_opacity(std::vector<std::uint8_t>& rgba) {
+  for (std::size_t at = 0; at < rgba.size(); at += 4)
+    if (const int opacity = rgba[at + 3]; opacity > 0 && opacity < 255)
+      for (std::size_t part = at; part < at + 3; ++part)
+        rgba[part] = static_cast<std::uint8_t>(std::min((255 * rgba[part] + opacity / 2) / opacity, 255));
 }
 }  // namespace
 
@@ -62,18 +71,20 @@ Target::~Target() {
 void Target::bind() const {
   glBindFramebuffer(GL_FRAMEBUFFER, samples_framebuffer_);
   glViewport(0, 0, width_, height_);
-  glClear(GL_DEPTH_BUFFER_BIT);
+  glClearColor(0, 0, 0, 0);
+  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-Image Target::read() const {
+Image Target::read(bool clear) const {
   glBlitNamedFramebuffer(samples_framebuffer_, resolved_framebuffer_, 0, 0, width_, height_, 0, 0, width_,
                          height_, GL_COLOR_BUFFER_BIT, GL_NEAREST);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, resolved_framebuffer_);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
-  Image image{width_, height_, {}};
-  const std::size_t row = 3 * static_cast<std::size_t>(width_);
+  Image image{width_, height_, {}, clear ? 4 : 3};
+  const std::size_t row = static_cast<std::size_t>(image.channels) * static_cast<std::size_t>(width_);
   image.pixels.resize(row * static_cast<std::size_t>(height_));
-  glReadPixels(0, 0, width_, height_, GL_RGB, GL_UNSIGNED_BYTE, image.pixels.data());
+  glReadPixels(0, 0, width_, height_, clear ? GL_RGBA : GL_RGB, GL_UNSIGNED_BYTE, image.pixels.data());
+  if (clear) divide_by_opacity(image.pixels);
   // OpenGL's first row is the bottom one.
   for (auto top = image.pixels.begin(), bottom = image.pixels.end();
        bottom - top >= 2 * static_cast<std::ptrdiff_t>(row); top += static_cast<std::ptrdiff_t>(row)) {

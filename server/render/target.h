@@ -17,10 +17,12 @@ class Target {
   Target(Target&& other) noexcept;
   Target& operator=(Target&&) = delete;
 
-  /// Clears the depths; draws go here until another framebuffer is bound.
+  /// Clears the depths, and the colours to transparent black; draws go here until another framebuffer is
+  /// bound.
   void bind() const;
-  /// Averages the samples and reads the picture back.
-  Image read() const;
+  /// Averages the samples and reads the picture back; with `clear` with its opacity. Draws blend colours that
+  /// are multiplied by it.
+  Image read(bool clear) const;
 
  private:
   Target(int width, int height);

@@ -6,4 +6,5 @@ layout(std140, binding = block_frame) uniform Frame {
   vec4 eye;                    // xyz [m]
   vec4 to_light;               // xyz, unit length
   vec4 framed;                 // xyz centre [m] and w radius [m] of the scene in the picture
+  int clear;                   // 1: the picture has no background
 };

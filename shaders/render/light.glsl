@@ -23,10 +23,15 @@ vec3 ambient(vec3 normal) {
   return mix(ground, sky, 0.5 + 0.5 * normal.y);
 }
 
-vec3 diffuse(vec3 position, vec3 normal) {
+// Of a surface that nothing shades.
+vec3 sunlight(vec3 normal) {
   const vec3 sun = vec3(0.86, 0.82, 0.76);
-  float facing = max(dot(normal, to_light.xyz), 0.0);
-  return sun * facing * (facing > 0.0 ? light_reaching(position, normal) : 0.0);
+  return sun * max(dot(normal, to_light.xyz), 0.0);
+}
+
+vec3 diffuse(vec3 position, vec3 normal) {
+  vec3 light = sunlight(normal);
+  return light.g > 0.0 ? light * light_reaching(position, normal) : light;
 }
 
 // Linear light in the encoding of an sRGB display.

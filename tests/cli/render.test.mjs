@@ -5,59 +5,16 @@ import { readdirSync, readFileSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
-import { inflateSync } from "node:zlib";
+import { decode, region } from "./png.mjs";
 import { clothlab, folder, program } from "./program.mjs";
-
-/** Width, height and RGB pixels of an 8-bit RGB PNG; every filter of the format. */
-function decode(path) {
-  const png = readFileSync(path);
-  assert.equal(png.subarray(0, 8).toString("latin1"), "\x89PNG\r\n\x1a\n");
-  const [width, height] = [png.readUInt32BE(16), png.readUInt32BE(20)];
-  assert.deepEqual([png[24], png[25]], [8, 2], "8 bits, RGB");
-  const chunks = [];
-  for (let at = 8; at < png.length; at += 12 + png.readUInt32BE(at))
-    if (png.toString("latin1", at + 4, at + 8) === "IDAT")
-      chunks.push(png.subarray(at + 8, at + 8 + png.readUInt32BE(at)));
-  const packed = inflateSync(Buffer.concat(chunks));
-  const row = 3 * width,
-    pixels = Buffer.alloc(row * height);
-  const paeth = (a, b, c) => {
-    const [pa, pb, pc] = [Math.abs(b - c), Math.abs(a - c), Math.abs(a + b - 2 * c)];
-    return pa <= pb && pa <= pc ? a : pb <= pc ? b : c;
-  };
-  for (let y = 0; y < height; ++y) {
-    const filter = packed[y * (row + 1)];
-    for (let x = 0; x < row; ++x) {
-      const left = x < 3 ? 0 : pixels[y * row + x - 3],
-        up = y === 0 ? 0 : pixels[(y - 1) * row + x];
-      const corner = x < 3 || y === 0 ? 0 : pixels[(y - 1) * row + x - 3];
-      const guess = [0, left, up, (left + up) >> 1, paeth(left, up, corner)][filter];
-      pixels[y * row + x] = packed[y * (row + 1) + 1 + x] + guess;
-    }
-  }
-  return { width, height, at: (x, y) => [...pixels.subarray(y * row + 3 * x, y * row + 3 * x + 3)] };
-}
 
 function render(name, ...args) {
   const { status, stderr } = clothlab(["render", ...args, "--out", name]);
   assert.equal(status, 0, stderr);
-  return decode(join(folder, name));
+  return decode(readFileSync(join(folder, name)), args.includes("--clear"));
 }
 
 const isRed = ([r, g, b]) => r > 1.6 * g && r > 1.6 * b;
-
-/** Box and number of the pixels that satisfy the predicate. */
-function region(image, predicate) {
-  const found = { count: 0, left: image.width, right: -1, top: image.height, bottom: -1 };
-  for (let y = 0; y < image.height; ++y)
-    for (let x = 0; x < image.width; ++x) {
-      if (!predicate(image.at(x, y))) continue;
-      ++found.count;
-      [found.left, found.right] = [Math.min(found.left, x), Math.max(found.right, x)];
-      [found.top, found.bottom] = [Math.min(found.top, y), Math.max(found.bottom, y)];
-    }
-  return found;
-}
 
 test("a preset's picture for the page is drawn, and where that is impossible the build says so and goes on", () => {
   const script = fileURLToPath(new URL("../../web/pictures.cmake", import.meta.url));
@@ -69,7 +26,7 @@ test("a preset's picture for the page is drawn, and where that is impossible the
     );
   for (const preset of ["seed", "blowup"]) {
     assert.equal(made(resolve(program), preset, `${preset}.png`).status, 0);
-    const { width, height } = decode(join(folder, `${preset}.png`));
+    const { width, height } = decode(readFileSync(join(folder, `${preset}.png`)));
     assert.deepEqual([width, height], [320, 200]);
   }
   const none = made("/bin/false", "seed", "none.png");
@@ -229,4 +186,61 @@ test("sizes have names", () => {
   const { status, stderr } = clothlab(["render", ...apart, "--out", "no.png", "--size", "2K"]);
   assert.equal(status, 2);
   assert.match(stderr, /--size: 2K; .*1080p, 4K or square/);
+});
+
+test("whatever a body's kind, it is exactly in the middle of its picture", () => {
+  const bodies = {
+    sphere: { sphere: { center: [50, 1, 0], radius: 0.7 } },
+    capsule: { capsule: { a: [50, 0, 0], b: [51, 0.5, 2], radius: 0.2 } },
+    box: { box: { center: [50, 0, 0], half: [0.1, 0.8, 0.4], rotate: [10, 50, 30] } },
+    mesh: { mesh: { obj: "presets/torso.obj" }, transform: { translate: [50, 0, 0], rotate: [0, 40, 0] } },
+  };
+  const scene = ["seed", "--time", "0", "--set", "/cloths/0/pins=[]", ...small, "--clear"];
+  for (const [name, body] of Object.entries(bodies))
+    for (const camera of [name, `${name};from=54,3,-4`]) {
+      const set = `/colliders=${JSON.stringify([{ name, ...body }])}`;
+      const image = render("body.png", ...scene, "--set", set, "--camera", camera);
+      const seen = region(image, ([, , , opacity]) => opacity > 0);
+      assertFills(placeIn(image, seen), camera);
+    }
+});
+
+test("a clear picture is transparent beside the scene, without a fringe of the background", () => {
+  const args = ["seed", "--time", "0", "--set", "/cloths/0/pins=[]", "--set", "/colliders=[]", ...small];
+  const [plain, clear] = [render("plain.png", ...args), render("clear.png", ...args, "--clear")];
+  const seen = { none: 0, all: 0, part: 0 };
+  for (let y = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x) {
+      const [pixel, background] = [clear.at(x, y), plain.at(x, y)];
+      const opacity = pixel[3];
+      seen[opacity === 0 ? "none" : opacity === 255 ? "all" : "part"]++;
+      if (opacity === 255) assert.deepEqual(pixel.slice(0, 3), background, `at ${x}, ${y}`);
+      else if (opacity > 0) assert.ok(isRed(pixel), `at ${x}, ${y}: ${pixel}`);
+    }
+  assert.equal(clear.at(0, 0)[3], 0);
+  assert.ok(
+    seen.none > 0.3 * width * height && seen.all > 0.1 * width * height && seen.part > 50,
+    JSON.stringify(seen),
+  );
+});
+
+test("of a plane a clear picture has the shadow on it, as dark as it is on the plane", () => {
+  // A sheet a metre above a floor, both seen from above: beside the sheet's own place is its shadow.
+  const floor = { name: "floor", plane: { point: [0, 0, 0], normal: [0, 1, 0] } };
+  const scene = ["seed", "--time", "0", "--set", "/cloths/0/pins=[]", "--set", `/colliders=[${JSON.stringify(floor)}]`];
+  const args = [...scene, ...small, "--camera", "from=0,8,0.6;to=0,0.5,0.5;angle=25"];
+  const [plain, clear] = [render("floor.png", ...args), render("shadow.png", ...args, "--clear")];
+  const isShadow = ([r, g, b, opacity]) => r + g + b === 0 && opacity > 60;
+  const shadow = region(clear, isShadow);
+  assert.ok(shadow.count > 300, JSON.stringify(shadow));
+  assert.ok(clear.at(0, 0)[3] < 4, "the lit floor leaves nothing");
+  const lit = plain.at(shadow.right + 6, Math.round((shadow.top + shadow.bottom) / 2))[1]; // beside the shadow
+  let worst = 0;
+  for (let y = 0; y < height; ++y)
+    for (let x = 0; x < width; ++x) {
+      const pixel = clear.at(x, y);
+      if (!isShadow(pixel)) continue;
+      worst = Math.max(worst, Math.abs(lit * (1 - pixel[3] / 255) - plain.at(x, y)[1]));
+    }
+  assert.ok(worst <= 2, `${worst} of 255: rounding of the opacity and of both colours`);
 });
