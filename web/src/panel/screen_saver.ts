@@ -3,6 +3,7 @@
 import { button, element } from "./dom";
 import { fileName } from "./file_name";
 import { notice, noticeError } from "./notices";
+import { chosenSize, paint, saveFile, savePicture } from "./picture_file";
 import type { Screen } from "./save_buttons";
 import { withDuration } from "./webm_duration";
 import type { PictureSize } from "../view/photograph";
@@ -17,13 +18,7 @@ const kinds = [
   ["video/mp4", "mp4"], // Safari before 18.4 knows no other
 ] as const;
 
-function save(blob: Blob, name: string): void {
-  const link = document.createElement("a");
-  link.href = URL.createObjectURL(blob);
-  link.download = name;
-  link.click();
-  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
-}
+const backdrop = [0.45, 0.55] as const; // as in style.css
 
 export class ScreenSaver {
   // Of a video. The stage's picture is transparent beside the scene: here it lies on the page's backdrop.
@@ -38,54 +33,21 @@ export class ScreenSaver {
     return this.screen.stage.frame?.header.time ?? 0;
   }
 
-  /// The size that is chosen; else that of the window's picture. Video's need even numbers.
   private get size(): PictureSize {
-    const [width, height] = element("picture-size", HTMLSelectElement).value.split("x").map(Number);
-    if (width && height) return { width, height };
-    const { clientWidth, clientHeight } = this.screen.stage.canvas;
-    const ratio = Math.min(devicePixelRatio, 2);
-    const even = (side: number): number => Math.max(2, 2 * Math.round((side * ratio) / 2));
-    return { width: even(clientWidth), height: even(clientHeight) };
+    return chosenSize(element("picture-size", HTMLSelectElement), this.screen.stage);
   }
 
-  /// Copies the picture that is on the stage's canvas.
-  private paint(to: HTMLCanvasElement, clear = false): void {
-    const { stage } = this.screen;
-    const { canvas: view } = stage;
-    const context = to.getContext("2d") as CanvasRenderingContext2D;
-    const { width, height } = to;
-    context.clearRect(0, 0, width, height);
-    if (!clear) {
-      const style = getComputedStyle(document.documentElement);
-      const backdrop = context.createRadialGradient(0, 0, 0, 0, 0, 1);
-      backdrop.addColorStop(0, style.getPropertyValue("--backdrop-near").trim());
-      backdrop.addColorStop(1, style.getPropertyValue("--backdrop-far").trim());
-      context.setTransform(0.9 * width, 0, 0, 0.75 * height, 0.45 * width, 0.55 * height); // as in style.css
-      context.fillStyle = backdrop;
-      context.fillRect(-1, -1, 3, 3);
-      context.resetTransform();
-    }
-    // A film of the stage's is stretched to its canvas; what replaces the scene has the window's shape.
-    const scale = Math.min(width / view.width, height / view.height);
-    const [wide, high] = stage.replaced ? [scale * view.width, scale * view.height] : [width, height];
-    context.drawImage(view, (width - wide) / 2, (height - high) / 2, wide, high);
-  }
-
-  savePicture(): void {
+  async savePicture(): Promise<void> {
     const name = fileName(this.screen.sceneName(), this.time, "png");
-    const { size } = this;
-    const canvas = Object.assign(document.createElement("canvas"), size);
-    this.screen.stage.photograph(size, () => this.paint(canvas, element("picture-clear", HTMLInputElement).checked));
-    canvas.toBlob((blob) => {
-      if (blob) save(blob, name);
-      else noticeError("Not saved", new Error("The browser made no picture of it."));
-    }, "image/png");
+    const clear = element("picture-clear", HTMLInputElement).checked;
+    if (!(await savePicture(this.screen.stage, this.size, backdrop, clear, name)))
+      noticeError("Not saved", new Error("The browser made no picture of it."));
   }
 
   async saveModel(): Promise<void> {
     try {
       const bytes = await this.screen.get("/api/mesh.glb");
-      save(new Blob([bytes], { type: "model/gltf-binary" }), fileName(this.screen.sceneName(), this.time, "glb"));
+      saveFile(new Blob([bytes], { type: "model/gltf-binary" }), fileName(this.screen.sceneName(), this.time, "glb"));
     } catch (error) {
       noticeError("Not saved", error as Error);
     }
@@ -113,7 +75,7 @@ export class ScreenSaver {
     const { stage } = this.screen;
     const { size } = this;
     Object.assign(this.canvas, size).getContext("2d"); // there is no stream of a canvas without
-    stage.film = { size, take: () => this.paint(this.canvas) };
+    stage.film = { size, take: () => paint(stage, this.canvas, backdrop) };
     stage.invalidate();
     const stream = this.canvas.captureStream(rate);
     const recorder = (this.recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 8e6 }));
@@ -148,8 +110,8 @@ export class ScreenSaver {
 
   private async saveVideo(video: Blob, name: string): Promise<void> {
     const { type } = video;
-    if (type !== "video/webm") return save(video, name);
-    save(new Blob(withDuration(new Uint8Array(await video.arrayBuffer()), 1 / rate), { type }), name);
+    if (type !== "video/webm") return saveFile(video, name);
+    saveFile(new Blob(withDuration(new Uint8Array(await video.arrayBuffer()), 1 / rate), { type }), name);
   }
 
   private tell(text: string, live: boolean): void {

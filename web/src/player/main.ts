@@ -1,5 +1,7 @@
 // The page that plays a recording without a server: what `clothlab record --out F.html` writes.
 import { element } from "../panel/dom";
+import { fileName } from "../panel/file_name";
+import { chosenSize, savePicture } from "../panel/picture_file";
 import { bindCameraInput } from "../view/camera_input";
 import { fields, gradient } from "../view/fields";
 import { hook } from "../test_hook";
@@ -15,6 +17,7 @@ declare global {
   }
 }
 
+const backdrop = [0.5, 0.5] as const; // as in player.css
 const title = document.title;
 const message = element("message", HTMLElement);
 const slider = element("frame", HTMLInputElement);
@@ -35,7 +38,7 @@ function describe({ rate, frames, diverged }: Recording): void {
   message.hidden = false;
 }
 
-function bind(stage: Stage, player: Player): void {
+function bind(stage: Stage, player: Player, name: string): void {
   const playButton = element("play", HTMLButtonElement);
   const strain = element("strain", HTMLButtonElement);
   const toggle = (): void => player.play(!player.playing);
@@ -53,6 +56,13 @@ function bind(stage: Stage, player: Player): void {
   playButton.onclick = toggle;
   strain.onclick = colour;
   element("fit", HTMLButtonElement).onclick = fit;
+  const picture = async (): Promise<void> => {
+    const clear = element("picture-clear", HTMLInputElement).checked;
+    const size = chosenSize(element("picture-size", HTMLSelectElement), stage);
+    if (!(await savePicture(stage, size, backdrop, clear, fileName(name, player.time, "png"))))
+      fail(new Error("The browser made no picture of it."));
+  };
+  element("picture-save", HTMLButtonElement).onclick = () => void picture();
   slider.oninput = () => go(Number(slider.value));
   const keys: Record<string, () => void> = {
     " ": toggle,
@@ -65,7 +75,10 @@ function bind(stage: Stage, player: Player): void {
   };
   addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    if (event.key === " " && event.target instanceof HTMLButtonElement) return; // its own key
+    const { target } = event; // which may have keys of its own
+    if (target instanceof HTMLSelectElement) return;
+    if (event.key === " " && target instanceof HTMLElement && target.matches("button, summary, [type=checkbox]"))
+      return;
     const act = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!act) return;
     event.preventDefault();
@@ -95,7 +108,7 @@ async function start(): Promise<void> {
     },
     shown: (frame, { time }, range) => {
       slider.value = String(frame);
-      clock.textContent = `${(frame / recording.rate).toFixed(2)} s`;
+      clock.textContent = `${player.time.toFixed(2)} s`;
       clock.title = `Simulated time: ${time.toFixed(2)} s`;
       slider.setAttribute("aria-valuetext", clock.textContent);
       if (range > 0) element("legend-most", HTMLElement).textContent = fields.strain.most(range);
@@ -104,7 +117,7 @@ async function start(): Promise<void> {
   });
   element("legend-scale", HTMLElement).style.background = gradient("strain");
   resize();
-  bind(stage, player);
+  bind(stage, player, recording.name);
   player.play(!calm);
 }
 

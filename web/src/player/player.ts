@@ -41,6 +41,11 @@ export class Player {
     return Math.floor(this.position);
   }
 
+  /// Of the frame, since the recording began [s].
+  get time(): number {
+    return this.frame / this.recording.rate;
+  }
+
   /// Plays or stops; from the end it plays anew.
   play(playing: boolean): void {
     if (playing && this.frame >= this.recording.frames - 1) this.seek(0);
