@@ -1,13 +1,14 @@
 // What axe-core, a checker of accessibility, says of a page.
 import { readFileSync } from "node:fs";
 import { createRequire } from "node:module";
+import { arrived } from "./browser.mjs";
 
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const rules = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
 
 /// What axe-core finds wrong, each with the elements and the reason.
 export async function violations({ page }, when) {
-  await page.waitForTimeout(400); // what slides in has arrived
+  await arrived(page);
   if (!(await page.evaluate(() => "axe" in window))) await page.evaluate(axe);
   const found = await page.evaluate(
     async (values) => (await window.axe.run(document, { runOnly: { type: "tag", values } })).violations,

@@ -66,6 +66,16 @@ export async function eventually(what, read, good, milliseconds = patience) {
   }
 }
 
+/// Waits until what a press has changed is laid out, and what slides or fades has arrived.
+export const arrived = (page) =>
+  page.evaluate(async () => {
+    const drawn = () => new Promise(requestAnimationFrame);
+    for (let picture = 0; picture < 2; ++picture) await drawn();
+    const ending = document.getAnimations().filter(({ effect }) => Number.isFinite(effect.getComputedTiming().endTime));
+    await Promise.allSettled(ending.map(({ finished }) => finished));
+    await drawn();
+  });
+
 /// The bytes of a file that the page has saved. The browser may be another process's (chromium.mjs), so that the file
 /// has no path here.
 export async function bytesOf(download) {

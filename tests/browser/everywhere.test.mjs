@@ -2,7 +2,7 @@
 // motion, folded panels.
 import assert from "node:assert/strict";
 import { violations } from "./axe.mjs";
-import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { arrived, browserTest, eventually, screenshots, withServer } from "./browser.mjs";
 import { hiddenPoints } from "./hidden_points.mjs";
 
 const here = withServer();
@@ -158,8 +158,9 @@ for (const [width, height] of [
     const { page } = viewer;
     const found = [];
     const look = async (when) => {
-      for (const close of await page.locator(".notice .close").all()) await close.click();
-      await page.waitForTimeout(400);
+      // Those that go by themselves may do so meanwhile.
+      await page.locator(".notice .close").evaluateAll((all) => all.forEach((close) => close.click()));
+      await arrived(page);
       found.push(...(await page.evaluate(unreachable)).map((problem) => `${when}: ${problem}`));
     };
     await page.locator("#first-steps").waitFor();
@@ -289,7 +290,7 @@ browserTest("on a phone the whole cloth of every preset is in the picture at fir
     const viewer = await here.open(options);
     await viewer.until((name) => window.clothlab.document?.name === name, preset);
     const look = () => viewer.page.evaluate(hiddenPoints, 0);
-    const seen = await eventually(preset, look, ({ hidden }) => hidden === 0, 4000).catch(look);
+    const seen = await eventually(preset, look, ({ hidden }) => hidden === 0).catch(look);
     if (seen.hidden)
       found.push(`${preset}: ${seen.hidden} of ${seen.of} vertices, ${seen.worst} px into ${seen.where}`);
     await viewer.page.close();
