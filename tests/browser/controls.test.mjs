@@ -128,6 +128,7 @@ browserTest("self-collision is switched off and on", async () => {
 
 browserTest("the passes say what they take on the GPU, and those left out say why", async () => {
   const { viewer, client } = await both("passes");
+  await viewer.figures();
   await viewer.page.locator(".passes summary").click();
   const time = (pass) => viewer.page.locator(`.passes li:has-text("${pass}") b`).textContent();
   for (const pass of ["neighbour search", "symplectic euler"])

@@ -141,6 +141,8 @@ browserTest("a patch refused for crossings is applied with points instead, by on
 
 browserTest("the figures have the counts of contact between surfaces while there are any", async () => {
   const { viewer, client } = await both("crossings-figures");
+  await viewer.figures();
+  await viewer.page.locator("#stats").getByText("Vertices").waitFor();
   const figure = viewer.page.locator("#stats > div", { hasText: "Surface" });
   assert.equal(await figure.isVisible(), false);
   await client.request("scene.patch", { patch: { self_collision: { kind: "surface" } } });

@@ -9,9 +9,7 @@ const here = withServer();
 const card = ({ page }) => page.getByRole("region", { name: "See inside" });
 const box = (viewer, name) => card(viewer).getByRole("checkbox", { name, exact: true });
 const opener = ({ page }) => page.getByRole("button", { name: "See inside", exact: true });
-/// Opens the card; on a phone the figures that hold its button first.
 async function open(viewer, press = (locator) => locator.click()) {
-  if (!(await opener(viewer).isVisible())) await press(viewer.page.locator("#figures > summary"));
   await press(opener(viewer));
   await card(viewer).waitFor();
 }

@@ -81,6 +81,7 @@ browserTest("a picture from the user's own camera has what the cards leave free 
   const { page } = viewer;
   await viewer.until(() => window.clothlab.simTime > 0.5);
   await viewer.pause();
+  await viewer.figures();
   const { left, top, width, height } = await page.evaluate(() => window.clothlab.stage.area);
   const [x, y] = [left + width / 2, top + height / 2];
   await page.mouse.move(x, y - 0.45 * height);
