@@ -204,7 +204,6 @@ for (const [width, height] of [
         when,
         () => page.evaluate(covered),
         ({ length }) => length === 0,
-        10_000,
       );
     // This notice stays.
     const script = await Client.connect(here.server, { session: `toast-${width}` });

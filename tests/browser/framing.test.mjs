@@ -35,7 +35,6 @@ async function check(viewer, moment, found = []) {
         return viewer.page.evaluate(hiddenPoints, margin);
       },
       ({ hidden, cut }) => hidden === 0 && cut === "",
-      12_000,
     ).catch(async () => viewer.page.evaluate(hiddenPoints, margin));
     if (pictures)
       await viewer.page.screenshot({ path: `${screenshots}framing-${seen.scene}-${moment}-${width}x${height}.png` });
@@ -59,7 +58,6 @@ async function stepTo(viewer, client, dt, time) {
     `the page at ${time} s`,
     () => viewer.read("simTime"),
     (shown) => shown > time - dt,
-    120_000,
   );
 }
 
@@ -107,7 +105,6 @@ browserTest("a page that opens on a wide scene shows all of it beside the panel,
     "all in view",
     () => viewer.page.evaluate(hiddenPoints, margin),
     ({ hidden }) => hidden === 0,
-    5000,
   );
 });
 
