@@ -4,7 +4,7 @@ import { browserTest, eventually, screenshots, withServer } from "./browser.mjs"
 
 const { both } = withServer();
 
-/// Starts anew, pauses half a second of the scene's time later, and waits until the page shows the last frame.
+/// Starts anew, pauses half a second of the scene's time later, and waits until the page has drawn the last frame.
 async function stopAfterHalfASecond(viewer, client) {
   await client.request("sim.reset", {});
   await eventually(
@@ -13,7 +13,9 @@ async function stopAfterHalfASecond(viewer, client) {
     (time) => time > 0.5 && time < 5,
   );
   await client.request("sim.pause", {});
-  await viewer.page.waitForTimeout(500);
+  const { step: last } = await client.nextNotification("sim.status", ({ playing }) => !playing);
+  await viewer.until((step) => window.clothlab.step === step, last);
+  await viewer.still();
 }
 
 browserTest(
@@ -187,7 +189,6 @@ browserTest(
     const [a, b] = [Math.cos(Math.PI / 9), Math.sin(Math.PI / 9)];
     near(seen.roof, spun([0.6 + 1.5 * (0.2 * a - 0.1 * b), 1 + 1.5 * (0.2 * b + 0.1 * a), 0]), "the roof's ridge");
     assert.equal(seen.casters, 2);
-    await viewer.page.waitForTimeout(300);
     await viewer.page.screenshot({ path: `${screenshots}meshes.png` });
     // They are seen: without them the picture is another one.
     const pictures = [];
@@ -196,7 +197,7 @@ browserTest(
         for (const { mesh } of window.clothlab.stage.colliders.shown.slice(0, 2)) mesh.visible = visible;
         window.clothlab.stage.invalidate();
       }, visible);
-      await viewer.page.waitForTimeout(300);
+      await viewer.still();
       pictures.push(await viewer.page.locator("canvas").first().screenshot());
     }
     assert.notDeepEqual(pictures[0], pictures[1]);

@@ -4,6 +4,7 @@ import { spawnSync } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { isDeepStrictEqual } from "node:util";
 import { Server } from "../protocol/harness.mjs";
 import { browserTest, bytesOf, eventually, screenshots, withServer } from "./browser.mjs";
 
@@ -200,38 +201,38 @@ browserTest("what is copied as a command line, as Python and as JavaScript makes
     for (const name of ["clothlab.py", "clothlab.mjs"])
       writeFileSync(join(folder, name), await (await fetch(`${server}/${name}`)).text());
     await opened(page);
+    // Loaded, a scene comes whole: of a patch the page has what was sent, without the defaults of what is new.
+    const load = async (params) => {
+      await client.request("scene.load", params);
+      const loaded = await scene();
+      await eventually(
+        `the text of ${loaded.name}`,
+        async () => JSON.parse(await area(page).inputValue()),
+        (shown) => isDeepStrictEqual(shown, loaded),
+      );
+    };
     for (const [what, patch] of Object.entries(changes)) {
       await client.request("scene.load", { preset: "seed" });
       await client.request("scene.patch", { patch });
       const wanted = await scene();
-      await eventually(
-        "the text",
-        () => area(page).inputValue(),
-        (text) => JSON.stringify(JSON.parse(text)).length > 0,
-      );
-      await eventually(
-        "the page",
-        () => viewer.read("document"),
-        ({ name }) => name === wanted.name,
-      );
-      await page.waitForTimeout(200);
+      await load({ scene: wanted });
       for (const [kind, file, run] of [
         ["Python", "copied.py", "python3"],
         ["JavaScript", "copied.mjs", process.execPath],
       ]) {
         await page.getByRole("button", { name: kind }).click();
-        const code = await page.evaluate(() => navigator.clipboard.readText());
-        assert.equal(code, await page.getByLabel("Copied text").inputValue());
-        await client.request("scene.load", { preset: "blowup" });
+        const code = await page.getByLabel("Copied text").inputValue();
+        await eventually(
+          `${what} as ${kind}, copied`,
+          () => page.evaluate(() => navigator.clipboard.readText()),
+          (copied) => copied === code,
+        );
+        await load({ preset: "blowup" });
         writeFileSync(join(folder, file), code);
         const { status, stderr } = spawnSync(run, [join(folder, file)], { encoding: "utf8" });
         assert.equal(status, 0, `${code}\n${stderr}`);
         assert.deepEqual(await scene(), wanted, `${what} as ${kind}`);
-        await eventually(
-          "the page",
-          () => viewer.read("document"),
-          ({ name }) => name === wanted.name,
-        );
+        await load({ scene: wanted });
       }
       await page.getByRole("button", { name: "command line" }).click();
       const line = await page.getByLabel("Copied text").inputValue();
