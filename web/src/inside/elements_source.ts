@@ -1,34 +1,19 @@
-// Fetches the springs and finite elements of the scene, page by page, and again when the cloth is another.
+// Fetches the springs and finite elements of the scene, part by part, and again when the cloth is another.
 import { floats, joined, octets, uints } from "../link/arrays";
+import { type Ask, askParts, type Part } from "../link/inspect_parts";
 import type { Elements, Springs } from "./strain";
 
-interface Part {
-  topology_revision: number;
-  total: number;
-  first: number;
-  count: number;
-  vertices: string;
+interface SpringsPart extends Part {
   rest_length: string;
   kind: string;
+}
+
+interface ElementsPart extends Part {
   shares: string;
 }
 
-export type Ask = (method: string, params: Record<string, unknown>) => Promise<unknown>;
-
-/// All answers of a list; null if the cloth changed meanwhile.
-async function parts(ask: Ask, method: string, revision: number): Promise<Part[] | null> {
-  const found: Part[] = [];
-  for (let first = 0; ; ) {
-    const part = (await ask(method, { first })) as Part;
-    if (part.topology_revision !== revision) return null;
-    found.push(part);
-    first += part.count;
-    if (first >= part.total || part.count === 0) return found;
-  }
-}
-
 export async function fetchSprings(ask: Ask, revision: number): Promise<Springs | null> {
-  const found = await parts(ask, "inspect.springs", revision);
+  const found = await askParts<SpringsPart>(ask, "inspect.springs", revision);
   if (!found) return null;
   const restLength = joined(
     found.map((part) => floats(part.rest_length)),
@@ -50,7 +35,7 @@ export async function fetchSprings(ask: Ask, revision: number): Promise<Springs 
 }
 
 export async function fetchElements(ask: Ask, revision: number): Promise<Elements | null> {
-  const found = await parts(ask, "inspect.elements", revision);
+  const found = await askParts<ElementsPart>(ask, "inspect.elements", revision);
   if (!found) return null;
   const vertices = joined(
     found.map((part) => uints(part.vertices)),

@@ -1,6 +1,7 @@
 // Learns which vertex in frames each vertex of a mesh's file is, of the cloths for which sim.status says that some have
 // another number there.
 import { joined, uints } from "./arrays";
+import { type Ask, askParts } from "./inspect_parts";
 import type { ClothRange, Topology } from "./protocol";
 
 /// In sim.status.
@@ -9,16 +10,8 @@ export interface Renumbered {
   cloths: number[];
 }
 
-interface Part {
-  topology_revision: number;
-  total: number;
-  first: number;
-  count: number;
-  vertices: string;
-}
-
 export interface NumbersHost {
-  ask(method: string, params: Record<string, unknown>): Promise<unknown>;
+  ask: Ask;
   topology(): Topology | null;
   arrived(): void; ///< ClothRange.numbers of the topology has changed
 }
@@ -45,16 +38,12 @@ export class NumbersSource {
   private async ask(revision: number, cloth: number, range: ClothRange): Promise<void> {
     this.asked.add(range);
     try {
-      const found: Uint32Array[] = [];
-      for (let first = 0, total = 1; first < total; ) {
-        const part = (await this.host.ask("inspect.vertices", { cloth, first })) as Part;
-        if (part.topology_revision !== revision) return; // there is another cloth by now, with a status of its own
-        if (part.count === 0) break;
-        found.push(uints(part.vertices));
-        first += part.count;
-        total = part.total;
-      }
-      range.numbers = joined(found, Uint32Array);
+      const found = await askParts(this.host.ask, "inspect.vertices", revision, { cloth });
+      if (!found) return; // there is another cloth by now, with a status of its own
+      range.numbers = joined(
+        found.map((part) => uints(part.vertices)),
+        Uint32Array,
+      );
       this.host.arrived();
     } catch {
       // The server is away, or is asked too much: a later status asks again.
