@@ -389,7 +389,7 @@ browserTest(
     const { viewer, client, scene } = await both("handles", { width: 1440, height: 900 });
     await client.request("scene.load", { scene: furnished });
     await viewer.until(() => window.clothlab.document?.name === "furnished" && window.clothlab.simTime > 1);
-    await viewer.page.waitForTimeout(1000); // the camera follows the cloth
+    await still(viewer, vertex); // the camera follows the cloth
     const { mouse, keyboard } = viewer.page;
     const center = [0.75, 0.6, 0.2];
     const ball = await project(viewer, center);
