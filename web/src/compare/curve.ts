@@ -1,6 +1,7 @@
 // The difference over time as a curve: RMS over the vertices, and the largest.
 import uPlot from "uplot";
 import type { CompareResult } from "./words";
+import { axisStyle, coloursAt } from "../lab/axis_style";
 import { make } from "../lab/dom";
 
 const height = 190; // [px]
@@ -45,16 +46,8 @@ export class Curve {
     const width = this.element.clientWidth;
     if (width === 0 || this.data[0].length === 0) return;
     this.plot?.destroy();
-    const style = getComputedStyle(this.element);
-    const color = (name: string): string => style.getPropertyValue(name).trim();
-    const axis = {
-      stroke: color("--muted"),
-      grid: { stroke: color("--card-line"), width: 1 },
-      ticks: { stroke: color("--card-line"), width: 1 },
-      font: "12px system-ui, sans-serif",
-      labelFont: "12px system-ui, sans-serif",
-      labelSize: 16,
-    };
+    const colour = coloursAt(this.element);
+    const axis = axisStyle(this.element);
     this.plot = new uPlot(
       {
         width,
@@ -69,12 +62,12 @@ export class Curve {
         ],
         series: [
           {},
-          { label: "RMS", stroke: color("--compare-rms"), width: 2, points: { show: false } },
-          { label: "largest", stroke: color("--compare-most"), width: 2, points: { show: false }, dash: [6, 3] },
+          { label: "RMS", stroke: colour("--compare-rms"), width: 2, points: { show: false } },
+          { label: "largest", stroke: colour("--compare-most"), width: 2, points: { show: false }, dash: [6, 3] },
         ],
         legend: { show: false },
         cursor: { drag: { x: false, y: false }, y: false, points: { show: false } },
-        hooks: { draw: [(plot) => this.drawMarks(plot, color("--text"), color("--warn"))] },
+        hooks: { draw: [(plot) => this.drawMarks(plot, colour("--text"), colour("--warn"))] },
       },
       this.data,
       this.element,

@@ -1,5 +1,6 @@
 // The energy over the time before a blow-up, on a logarithmic scale, with the most that a run that holds may have.
 import uPlot from "uplot";
+import { axisStyle, coloursAt } from "../lab/axis_style";
 import { make } from "../lab/dom";
 
 const [low, high] = [110, 170]; // [px]: on a phone, elsewhere
@@ -51,16 +52,8 @@ export class EnergyChart {
     const { milliseconds, energy, allowed } = this.curve;
     if (width === 0 || energy.length === 0) return;
     this.plot?.destroy();
-    const style = getComputedStyle(this.element);
-    const color = (name: string): string => style.getPropertyValue(name).trim();
-    const axis = {
-      stroke: color("--muted"),
-      grid: { stroke: color("--card-line"), width: 1 },
-      ticks: { stroke: color("--card-line"), width: 1 },
-      font: "12px system-ui, sans-serif",
-      labelFont: "12px system-ui, sans-serif",
-      labelSize: 16,
-    };
+    const colour = coloursAt(this.element);
+    const axis = axisStyle(this.element);
     const range = this.range();
     this.plot = new uPlot(
       {
@@ -73,12 +66,12 @@ export class EnergyChart {
         ],
         series: [
           {},
-          { label: "energy", stroke: color("--accent"), width: 2, points: { size: 5 } },
-          { label: "limit", stroke: color("--text"), width: 1.5, dash: [6, 4], points: { show: false } },
+          { label: "energy", stroke: colour("--accent"), width: 2, points: { size: 5 } },
+          { label: "limit", stroke: colour("--text"), width: 1.5, dash: [6, 4], points: { show: false } },
         ],
         legend: { show: false },
         cursor: { show: false },
-        hooks: { draw: [(plot) => this.drawMark(plot, color("--text"))] },
+        hooks: { draw: [(plot) => this.drawMark(plot, colour("--text"))] },
       },
       [milliseconds, energy.map((each) => (each > 0 ? each : null)), energy.map(() => allowed)],
       this.element,
