@@ -63,6 +63,9 @@ test("a patch of plain values is applied here; one that may bring defaults, or c
   store.patched(3, [{ op: "add", path: "/cloths/0", value: {} }]);
   store.patched(9, { solver: { dt: 1 } });
   assert.deepEqual([store.document.solver.dt, fetched], [0.5, 2]);
+  store.patched(3, { wind: { velocity: [1, 0, 0] } }); // where there was none: its other numbers are the server's
+  store.patched(3, { solver: { iterations: 4 } });
+  assert.deepEqual([store.document.wind, store.document.solver.iterations, fetched], [undefined, undefined, 4]);
 });
 
 test("a refusal is reported, and the next edit is sent", async () => {

@@ -57,9 +57,9 @@ export class SceneStore {
   /// Takes a patch, this page's or another viewer's. A revision is applied once, though several messages may tell it.
   patched(revision: number, patch: Patch): void {
     if (!this.stored || revision <= this.revision) return;
-    // A patch lacks the defaults that the server filled in: anything but plain values makes the page fetch the
-    // document.
-    if (revision !== this.revision + 1 || !isPlain(patch)) {
+    // A patch lacks the defaults that the server filled in: anything but plain values in places of plain values makes
+    // the page fetch the document.
+    if (revision !== this.revision + 1 || !isPlain(patch, this.stored)) {
       void this.events.fetch();
       return;
     }
@@ -148,10 +148,16 @@ export class SceneStore {
 
 const isScalar = (value: unknown): boolean => typeof value !== "object" || value === null;
 
-function isPlain(patch: Patch): boolean {
+function isPlain(patch: Patch, document: SceneDocument): boolean {
   if (Array.isArray(patch)) return patch.every((operation) => operation.op === "replace" && isScalar(operation.value));
-  return Object.values(patch).every(
-    (value) =>
-      value !== null && (Array.isArray(value) ? value.every(isScalar) : isScalar(value) || isPlain(value as Patch)),
-  );
+  const replaces = (value: unknown, present: unknown): boolean => {
+    if (value === null || present === undefined) return false;
+    if (Array.isArray(value)) return value.every(isScalar);
+    if (isScalar(value)) return true;
+    if (typeof present !== "object" || present === null) return false;
+    return Object.entries(value as object).every(([key, of]) =>
+      replaces(of, (present as Record<string, unknown>)[key]),
+    );
+  };
+  return replaces(patch, document);
 }
