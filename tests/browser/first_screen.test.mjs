@@ -177,15 +177,20 @@ browserTest("help opens at its top, also in a low window and the second time", a
 /// Buttons that a notice lies on.
 const covered = () => {
   const meets = (a, b) => a.left < b.right - 1 && a.right > b.left + 1 && a.top < b.bottom - 1 && a.bottom > b.top + 1;
-  // What does not fit scrolls in their holder.
-  const holder = document.getElementById("notices").getBoundingClientRect();
-  const boxes = [...document.querySelectorAll(".notice")].map((node) => {
-    const { left, right, top, bottom } = node.getBoundingClientRect();
-    return { left, right, top: Math.max(top, holder.top), bottom: Math.min(bottom, holder.bottom) };
-  });
+  // What does not fit scrolls in what holds it.
+  const seen = (node) => {
+    let { left, right, top, bottom } = node.getBoundingClientRect();
+    for (let holder = node.parentElement; holder; holder = holder.parentElement) {
+      if (getComputedStyle(holder).overflowY === "visible") continue;
+      const box = holder.getBoundingClientRect();
+      (top = Math.max(top, box.top)), (bottom = Math.min(bottom, box.bottom));
+    }
+    return { left, right, top, bottom };
+  };
+  const boxes = [...document.querySelectorAll(".notice")].map(seen);
   return [...document.querySelectorAll("button, select, input")]
     .filter((control) => !control.closest(".notice") && control.checkVisibility({ visibilityProperty: true }))
-    .filter((control) => boxes.some((box) => meets(box, control.getBoundingClientRect())))
+    .filter((control) => boxes.some((box) => meets(box, seen(control))))
     .map((control) => control.id || control.textContent);
 };
 
