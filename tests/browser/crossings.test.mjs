@@ -115,27 +115,24 @@ browserTest("a loaded scene takes crossings and their notice away", async () => 
   await client.close();
 });
 
-browserTest("a patch refused for crossings is applied with points instead, by one button", async () => {
+browserTest("an edit refused for crossings is applied with points instead, by one button", async () => {
   const { viewer, client, scene } = await both("crossings-points");
   const { page } = viewer;
-  // Surfaces without crossings; a mesh that passes through itself is then dropped.
-  await client.request("scene.patch", { patch: { self_collision: { kind: "surface" } } });
-  await eventually(
-    "the kind on the page",
-    () => viewer.read("document"),
-    (now) => now.self_collision.kind === "surface",
-  );
-  await page.evaluate(() => {
-    const text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.2 0.2 -0.5\nv 0.3 0.2 0.5\nv 0.2 0.3 0.5\nf 1 2 3\nf 4 5 6\n";
-    const dataTransfer = new DataTransfer();
-    dataTransfer.items.add(new File([text], "crossed.obj"));
-    document.body.dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
-  });
-  const refused = page.locator("#notices .notice", { hasText: "crossed.obj was refused" });
-  await refused.getByRole("button", { name: "Use points instead" }).press("Enter");
-  const applied = await eventually("the patch", scene, (now) => now.cloths[0].mesh.file === "crossed.obj");
+  const [lying, standing] = crossing.cloths;
+  const above = { ...lying, transform: { translate: [0, 1.2, 0] } };
+  const apart = { ...crossing, name: "apart", cloths: [above, standing] };
+  apart.self_collision = { ...crossing.self_collision, kind: "surface" };
+  await client.request("sim.pause");
+  await client.request("scene.load", { scene: apart });
+  await viewer.until(() => window.clothlab.document?.name === "apart");
+  await viewer.slider("Place", "scale");
+  const height = viewer.number("Place", "place y");
+  await height.fill("0.4");
+  await height.press("Enter");
+  await refusal(page).getByRole("button", { name: "Use points instead" }).press("Enter");
+  const applied = await eventually("the edit", scene, (now) => now.cloths[0].transform.translate[1] === 0.4);
   assert.equal(applied.self_collision.kind, "points");
-  assert.equal(await refused.count(), 0);
+  assert.equal(await refusal(page).count(), 0);
   await client.close();
 });
 

@@ -66,7 +66,9 @@ browserTest(
         (now) => now.verdict === verdict && now.says === `${word}: ${percent} of the limit`,
       );
       assert.match(shown.text, new RegExp(`\\${sign}\\s*${word}\\s*${percent}`));
-      colors.add(await viewer.page.locator(".gauge-fill").evaluate((fill) => getComputedStyle(fill).backgroundColor));
+      colors.add(
+        await viewer.page.locator(".gauge .gauge-fill").evaluate((fill) => getComputedStyle(fill).backgroundColor),
+      );
     }
     assert.equal(colors.size, 3);
     await viewer.page.getByRole("button", { name: "set the time step to 0.8" }).click();
