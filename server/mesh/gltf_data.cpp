@@ -1,10 +1,11 @@
 // The container, the JSON and the buffers of a glTF file.
+#include "server/mesh/gltf_data.h"
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
 
 #include "server/base/base64.h"
-#include "server/mesh/gltf_data.h"
 #include "server/mesh/text.h"
 
 namespace clothlab::mesh {

@@ -19,7 +19,8 @@ const harmless = new RegExp(
     "(?:Program)?Uniform\\w+",
     "(?:Compile|Link)\\w+",
     "\\w*(?:Framebuffer|Renderbuffer|TextureParameter)\\w*",
-    "TextureStorage2D|ReadPixels|PixelStorei|PolygonOffset|Viewport|BlendFunc|Clear|Enable|Disable|ActiveTexture",
+    "TextureStorage2D|ReadPixels|PixelStorei|PolygonOffset|Viewport|BlendFunc(?:Separate)?|DepthMask|Clear(?:Color)?",
+    "Enable|Disable|ActiveTexture",
     "EnableVertexArrayAttrib|VertexArrayAttrib(?:Binding|Format)|ObjectLabel|QueryCounter|ClientWaitSync|Finish|Flush",
     "NamedBufferStorage", // of a buffer that nobody has used yet
   ]
