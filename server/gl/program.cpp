@@ -1,6 +1,7 @@
 #include "server/gl/program.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstddef>
 #include <filesystem>
@@ -9,6 +10,8 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <string_view>
+#include <unordered_map>
 
 #include "server/base/data_files.h"
 #include "server/base/files.h"
@@ -148,28 +151,38 @@ std::string info_log(GLuint id, Get get, GetLog get_log) {
   return log;
 }
 
-void add_words(const std::string& text, std::set<std::string, std::less<>>& words) {
-  const auto of_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
-  for (auto at = text.begin(); (at = std::find_if(at, text.end(), of_word)) != text.end();) {
-    const auto end = std::find_if_not(at, text.end(), of_word);
-    words.emplace(at, end);
-    at = end;
-  }
-}
-
 /// The definitions that this text, or the value of another one of them, names. Scenes that differ in the
 /// others alone have the same program, which the driver's cache knows.
-Defines named_in(const std::string& text, Defines defines) {
-  std::set<std::string, std::less<>> words;
-  add_words(text, words);
-  auto end = defines.begin();  // of those that are named
-  const auto named = [&](const auto& define) {
-    return words.contains(std::string_view(define.first).substr(0, define.first.find('(')));
-  };
-  for (auto begin = end; (end = std::stable_partition(begin, defines.end(), named)) != begin; begin = end)
-    std::for_each(begin, end, [&](const auto& define) { add_words(define.second, words); });
-  defines.erase(end, defines.end());
-  return defines;
+Defines named_in(const std::string& text, const Defines& defines) {
+  const auto of_word = [](unsigned char c) { return c == '_' || std::isalnum(c) != 0; };
+  std::unordered_map<std::string_view, std::size_t> unnamed;  // name without parameters: index
+  std::array<bool, 256> begins{};                             // a name begins so: few words of a text do
+  for (std::size_t k = 0; k < defines.size(); ++k) {
+    const std::string_view name = std::string_view(defines[k].first).substr(0, defines[k].first.find('('));
+    unnamed.emplace(name, k);
+    begins[static_cast<unsigned char>(name.front())] = true;
+  }
+  std::vector<std::string_view> to_read{text};
+  std::vector<bool> named(defines.size());
+  while (!to_read.empty()) {
+    const std::string_view read = to_read.back();
+    to_read.pop_back();
+    for (auto at = read.begin(); (at = std::find_if(at, read.end(), of_word)) != read.end();) {
+      const auto end = std::find_if_not(at, read.end(), of_word);
+      const std::string_view word(at, end);
+      at = end;
+      if (!begins[static_cast<unsigned char>(word.front())]) continue;
+      const auto found = unnamed.find(word);
+      if (found == unnamed.end()) continue;
+      named[found->second] = true;
+      to_read.push_back(defines[found->second].second);
+      unnamed.erase(found);
+    }
+  }
+  Defines result;
+  for (std::size_t k = 0; k < defines.size(); ++k)
+    if (named[k]) result.push_back(defines[k]);
+  return result;
 }
 
 Result<GLuint> compile(const std::string& path, const Defines& defines, Reads reads, Source& source) {
