@@ -5,6 +5,7 @@
 // next Newton step.
 #include "implicit_euler.glsl"
 #include "implicit_friction.glsl"
+#define SUMS_AT_ONCE SUMS
 #include "group_sums.glsl"
 #ifndef CONTACT_TERM
 #include "../collide/colliders.glsl"
@@ -30,7 +31,6 @@ const bool solved = true;
 layout(std430, binding = slot_start_velocity) buffer Inertia { vec4 start_velocity[]; };
 layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };
 
-#define ROWS SUMS
 #include "implicit_total.glsl"
 #ifdef CONTACT_TERM
 #include "implicit_term.glsl"
@@ -39,9 +39,9 @@ layout(std430, binding = slot_grip) buffer Grip { vec4 grip[]; };
 
 /// A linear solver that stops at a tolerance loses momentum, and a free cloth would drift: returns the velocity [m/s]
 /// that gives it back to the whole cloth.
-vec3 drift() {
+vec3 drift(vec4 found[SUMS]) {
 #ifdef FREE
-  vec4 left_out = total(2);
+  vec4 left_out = found[2];
   return left_out.xyz / left_out.w;
 #else
   return vec3(0.0);
@@ -83,12 +83,14 @@ vec3 meet_contact(int i, float inverse_mass, vec3 start, vec3 x, vec3 u) {
 #endif
 
 void main() {
+  vec4 found[SUMS];
+  read_totals(found);
 #ifdef CONTACT_TERM
   float share = uintBitsToFloat(term.taken);  // implicit_choose.comp
 #else
-  float share = best_share();
+  float share = best_share(found);
 #endif
-  vec3 regained = drift();
+  vec3 regained = drift(found);
   int i = int(gl_GlobalInvocationID.x);
   if (i >= vertex_count) return;
   vec4 start = FETCH(start_position, i);

@@ -1,13 +1,13 @@
 // Implicit Euler, once per time step: adds to the first guess the combination of trends that makes its error the
 // smallest in the norm of the matrix (Fischer 1998), in the residual, too. A trend that says nothing new is left out.
 #include "implicit_euler.glsl"
+#define SUMS_AT_ONCE TRENDS
 #include "group_sums.glsl"
 READ_VEC4(trends, unit_trends);
 READ_VEC4(trend_products, unit_trend_products);
 READ_VEC4(group_sums, unit_group_sums);
 layout(std430, binding = slot_residual) buffer Residual { vec4 residual[]; };
 layout(std430, binding = slot_guess) buffer Guess { vec4 guess[]; };
-#define ROWS TRENDS
 #include "implicit_total.glsl"
 
 /// How much of each trend. `row`: see implicit_project.comp. Solves by L D L^T.
@@ -34,7 +34,7 @@ vec3 shares_of_trends(vec4 row[TRENDS]) {
 
 void main() {
   vec4 row[TRENDS];
-  for (int t = 0; t < TRENDS; ++t) row[t] = total(t);
+  read_totals(row);
   vec3 share = shares_of_trends(row);
   int i = int(gl_GlobalInvocationID.x);
   if (i >= vertex_count) return;

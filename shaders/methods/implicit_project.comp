@@ -1,6 +1,7 @@
 // Implicit Euler, once per time step: the matrix times each trend of the motion, and the sums from which
 // implicit_improve.comp finds the combination of trends that is nearest to the solution.
 #include "implicit_euler.glsl"
+#define SUMS_AT_ONCE TRENDS
 #include "group_sums.glsl"
 #include "touching.glsl"
 READ_VEC4(residual, unit_residual);
@@ -30,20 +31,19 @@ void multiply(int i, vec4 x, vec3 trend[TRENDS], out vec3 product[TRENDS]) {
 void main() {
   int i = int(gl_GlobalInvocationID.x);
   // In row t: the products of trend t with the matrix times it and times the later ones, and last with the residual.
-  vec4 sums[TRENDS] = vec4[](vec4(0.0), vec4(0.0), vec4(0.0));
+  vec4 rows[TRENDS] = vec4[](vec4(0.0), vec4(0.0), vec4(0.0));
   vec4 x = i < vertex_count ? FETCH(position, i) : vec4(0.0);
   if (x.w > 0.0) {
     vec3 trend[TRENDS], product[TRENDS], r = FETCH(residual, i).xyz;
     for (int t = 0; t < TRENDS; ++t) trend[t] = FETCH(trends, TRENDS * i + t).xyz;
     multiply(i, x, trend, product);
     for (int t = 0; t < TRENDS; ++t) {
-      for (int later = t; later < TRENDS; ++later) sums[t][later] = dot(trend[t], product[later]);
-      sums[t].w = dot(trend[t], r);
+      for (int later = t; later < TRENDS; ++later) rows[t][later] = dot(trend[t], product[later]);
+      rows[t].w = dot(trend[t], r);
       trend_products[TRENDS * i + t] = vec4(product[t], 0.0);
     }
   }
-  for (int t = 0; t < TRENDS; ++t) {
-    vec4 total = sum_of_group(sums[t]);
-    if (gl_LocalInvocationID.x == 0) group_sums[TRENDS * gl_WorkGroupID.x + t] = total;
-  }
+  sums_of_group(rows, false);
+  if (gl_LocalInvocationID.x == 0)
+    for (int t = 0; t < TRENDS; ++t) group_sums[TRENDS * gl_WorkGroupID.x + t] = rows[t];
 }

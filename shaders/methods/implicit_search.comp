@@ -2,6 +2,7 @@
 //   m/2 |u - v|^2 + elastic(start + dt u) - dt m g.u + dt m drag/2 |u|^2 + dt c/2 sum (n.(u_i - u_j))^2
 // for each share of the Newton step. A pin moves its whole way at any share.
 #include "implicit_euler.glsl"
+#define SUMS_AT_ONCE SUMS
 #include "group_sums.glsl"
 #ifdef CONTACT_TERM
 #include "implicit_term.glsl"
@@ -89,15 +90,13 @@ void main() {
 #endif
     }
   }
-  vec4 first = sum_of_group(vec4(energy[0], energy[1], energy[2], energy[3]));
-  vec4 second = sum_of_group(vec4(energy[4], energy[5], energy[6], energy[7]));
+  vec4 sums_of[SUMS];
+  sums_of[0] = vec4(energy[0], energy[1], energy[2], energy[3]);
+  sums_of[1] = vec4(energy[4], energy[5], energy[6], energy[7]);
 #ifdef FREE
-  vec4 left_out = sum_of_group(i < vertex_count ? momentum_left_out(i, x) : vec4(0.0));
+  sums_of[2] = i < vertex_count ? momentum_left_out(i, x) : vec4(0.0);
 #endif
-  if (gl_LocalInvocationID.x != 0) return;
-  group_sums[SUMS * gl_WorkGroupID.x] = first;
-  group_sums[SUMS * gl_WorkGroupID.x + 1] = second;
-#ifdef FREE
-  group_sums[SUMS * gl_WorkGroupID.x + 2] = left_out;
-#endif
+  sums_of_group(sums_of, false);
+  if (gl_LocalInvocationID.x == 0)
+    for (int k = 0; k < SUMS; ++k) group_sums[SUMS * gl_WorkGroupID.x + k] = sums_of[k];
 }
