@@ -1,6 +1,7 @@
 // Choosing in the panel is safe: a fabric, or other rows and columns, brings what it needs in the same step of undo.
 import assert from "node:assert/strict";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { thorough } from "../thorough.mjs";
 
 const { both } = withServer();
 const diverged = (client) => client.messages.filter(({ method }) => method === "sim.diverged");
@@ -8,7 +9,7 @@ const diverged = (client) => client.messages.filter(({ method }) => method === "
 browserTest(
   "each of these fabrics, chosen on the seed, holds and moves; one undo takes fabric and solver back",
   async () => {
-    const { viewer, client, scene } = await both("chosen", { width: 1440, height: 900, sharp: true });
+    const { viewer, client, scene } = await both("chosen", { width: 1440, height: 900, sharp: thorough });
     const before = await scene();
     const menu = viewer.page.getByLabel("fabric", { exact: true });
     // the stiffest; a soft one; a heavy one
@@ -36,7 +37,7 @@ browserTest(
 );
 
 browserTest("a finer grid keeps its corners pinned and its mass as a whole, and does not blow up", async () => {
-  const { viewer, client, scene } = await both("finer", { width: 1440, height: 900, sharp: true });
+  const { viewer, client, scene } = await both("finer", { width: 1440, height: 900, sharp: thorough });
   const { page } = viewer;
   await viewer.until(() => document.querySelector(".differences") !== null);
   const cloth = async () => (await scene()).cloths[0];

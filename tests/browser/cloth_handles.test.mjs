@@ -1,13 +1,14 @@
 // A cloth is moved, turned and scaled at its start: by handles, by keys, by numbers; copied, removed, undone.
 import assert from "node:assert/strict";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { thorough } from "../thorough.mjs";
 import { small } from "./small.mjs";
 
 const { both } = withServer();
 
 /// A page on a small cloth, and the cloth as the server has it.
 async function opened(session, options) {
-  const all = await both(session, { width: 1440, height: 900, sharp: true, ...options });
+  const all = await both(session, { width: 1440, height: 900, sharp: thorough, ...options });
   await all.client.request("scene.load", { scene: small });
   await all.viewer.until(() => window.clothlab.document?.name === "small");
   return { ...all, cloth: async (index = 0) => (await all.scene()).cloths[index] };

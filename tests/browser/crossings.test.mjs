@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { thorough } from "../thorough.mjs";
 
 const { both } = withServer();
 
@@ -50,7 +51,7 @@ for (const [width, height] of [
   browserTest(
     `at ${width}x${height} a start with crossings is told, shown on request, and fits the window`,
     async () => {
-      const { viewer, client } = await refusedPage(`crossings-${width}`, { width, height, sharp: true });
+      const { viewer, client } = await refusedPage(`crossings-${width}`, { width, height, sharp: thorough });
       const { page } = viewer;
       assert.match(await refusal(page).textContent(), /edge \d+-\d+ of (lying|standing) × triangle \d+-\d+-\d+ of/);
       assert.equal(await shown(page), false);

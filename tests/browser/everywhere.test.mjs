@@ -47,19 +47,19 @@ for (const [width, height] of [
       await turnSheet();
       await page.getByRole("combobox", { name: "Colour by" }).selectOption("strain");
       await page.locator("#legend").waitFor();
-      found.push(...(await violations(viewer, "legend")));
+      found.push(...(await violations(viewer, "legend", "#legend")));
       await page.evaluate(() => document.activeElement.blur());
       await page.keyboard.press("i");
       for (const overlay of ["structural", "Contact pairs"])
         await page.getByRole("checkbox", { name: overlay, exact: true }).check();
       await page.locator(".inside-label").waitFor();
-      found.push(...(await violations(viewer, "see inside")));
+      found.push(...(await violations(viewer, "see inside", "#inside")));
       await page.keyboard.press("Escape");
       await page.getByRole("button", { name: "Lab", exact: true }).click();
       await page.getByRole("button", { name: "Options" }).first().click();
       for (const tab of ["Chart", "Stability", "Choose", "Simplify"]) {
         await page.getByRole("tab", { name: tab }).click();
-        found.push(...(await violations(viewer, `lab, ${tab}`)));
+        found.push(...(await violations(viewer, `lab, ${tab}`, "#lab")));
       }
       await page.keyboard.press("Escape");
       await page.keyboard.press("j");
@@ -69,7 +69,7 @@ for (const [width, height] of [
       await text.fill("{");
       await page.keyboard.press("Control+Enter");
       await page.locator(".text-band").waitFor();
-      found.push(...(await violations(viewer, "the scene as text, with a mistake")));
+      found.push(...(await violations(viewer, "the scene as text, with a mistake", "#text")));
       await page.keyboard.press("Escape");
       await page.keyboard.press("c");
       const compare = page.locator("#compare");
@@ -80,21 +80,21 @@ for (const [width, height] of [
         const details = compare.locator("details", { has: page.getByText(fold, { exact: true }) }).first();
         if ((await details.getAttribute("open")) === null) await details.locator("summary").first().click();
       }
-      found.push(...(await violations(viewer, "a comparison")));
+      found.push(...(await violations(viewer, "a comparison", "#compare")));
       await page.keyboard.press("Escape");
       await page.evaluate(() => {
         // raw deflate of a scene with one cloth
         location.hash = "#scene=BcExDoAgDEDRu_yZxbVXMQ5GGiFCScC4NL277zmfzlWHIVvCzq4IrdqjmcTVxlsWsjtdV0Gce9aMeEQc8QM";
       });
       await page.getByRole("dialog", { name: "A scene by link" }).waitFor();
-      found.push(...(await violations(viewer, "a scene by link")));
+      found.push(...(await violations(viewer, "a scene by link", "dialog")));
       await page.keyboard.press("Escape");
       await page.locator(".scene-actions button", { hasText: "Gallery" }).evaluate((gallery) => gallery.click());
       await page.getByRole("dialog", { name: "Presets" }).waitFor();
-      found.push(...(await violations(viewer, "the gallery")));
+      found.push(...(await violations(viewer, "the gallery", "dialog")));
       await page.keyboard.press("Escape");
       await page.getByRole("button", { name: "Help" }).click();
-      found.push(...(await violations(viewer, "help")));
+      found.push(...(await violations(viewer, "help", "#help")));
       assert.deepEqual(found, []);
       await client.close();
     });

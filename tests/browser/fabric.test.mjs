@@ -1,11 +1,12 @@
 // The menu of fabrics: names for the numbers of a cloth, its model, and numbers of the cloth's own.
 import assert from "node:assert/strict";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { thorough } from "../thorough.mjs";
 
 const { both } = withServer();
 
 browserTest("a fabric from the menu, a number of the cloth's own, and back", async () => {
-  const { viewer, client, scene } = await both("fabric", { sharp: true });
+  const { viewer, client, scene } = await both("fabric", { sharp: thorough, paused: true });
   const menu = viewer.page.getByLabel("fabric", { exact: true });
   const material = async () => (await scene()).cloths[0].material;
   assert.equal(await menu.inputValue(), "custom");

@@ -5,6 +5,7 @@ import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { Server } from "../protocol/harness.mjs";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { thorough } from "../thorough.mjs";
 
 const { both, open } = withServer();
 const drawn = existsSync(fileURLToPath(new URL("../../web/pictures/seed.png", import.meta.url)));
@@ -24,7 +25,7 @@ for (const [width, height] of [
   [320, 640],
 ])
   browserTest(`at ${width}x${height} each preset has its picture and its sentence, and a click loads it`, async () => {
-    const { viewer, client, scene } = await both(`gallery-${width}`, { width, height, sharp: true });
+    const { viewer, client, scene } = await both(`gallery-${width}`, { width, height, sharp: thorough });
     const { page } = viewer;
     const dialog = await gallery(page, width);
     const { presets, about } = await client.request("scene.presets");

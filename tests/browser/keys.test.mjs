@@ -1,11 +1,12 @@
 // Keys on the page: a press keys what a slider shows, and the timeline has marks of the keyframes.
 import assert from "node:assert/strict";
 import { browserTest, eventually, screenshots, withServer } from "./browser.mjs";
+import { thorough } from "../thorough.mjs";
 
 const here = withServer();
 
 browserTest("a button beside a slider keys its value at the present time, and the timeline marks it", async () => {
-  const { viewer, client, scene } = await here.both("keys", { sharp: true });
+  const { viewer, client, scene } = await here.both("keys", { sharp: thorough });
   const { page } = viewer;
   await viewer.pause();
   const time = () => page.evaluate(() => window.clothlab.lastFrame.header.time);

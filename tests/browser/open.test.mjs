@@ -70,7 +70,7 @@ browserTest("a shirt and a body in millimetres: opened by the button, put on, an
 });
 
 browserTest("by touch on a phone", async () => {
-  const { viewer, client, scene } = await both("touch", { width: 390, height: 844, hasTouch: true, sharp: true });
+  const { viewer, client, scene } = await both("touch", { width: 390, height: 844, hasTouch: true, sharp: thorough });
   const { page } = viewer;
   const open = page.getByRole("button", { name: "Open files" });
   if (!(await open.isVisible())) await page.locator("#sheet-handle").tap();
@@ -100,7 +100,7 @@ browserTest("by touch on a phone", async () => {
 });
 
 browserTest("a garment that nothing holds is paused, and is held by the waist at a click", async () => {
-  const { viewer, client, scene } = await both("hold", { width: 1440, height: 900, sharp: true });
+  const { viewer, client, scene } = await both("hold", { width: 1440, height: 900, sharp: thorough });
   const { page } = viewer;
   await drag(page, ["dragenter", "dragover"], [["skirt.obj", tube()]]);
   await page.locator(".drop-picture").waitFor();
@@ -158,7 +158,7 @@ browserTest("the parts of a file are taken apart", async () => {
 });
 
 browserTest("cloth that would go through the body stands beside it, with the words of the refusal", async () => {
-  const { viewer, client, scene } = await both("through", { width: 1440, height: 900, sharp: true });
+  const { viewer, client, scene } = await both("through", { width: 1440, height: 900, sharp: thorough });
   const { page } = viewer;
   const narrow = { radius: 0.15 };
   const dialog = await choose(page, [

@@ -10,7 +10,7 @@ for (const [size, window] of [
   ["phone", { width: 390, height: 844, hasTouch: true }],
 ])
   browserTest(`${size}: bodies, pins and cloths come and go by buttons, and Undo brings them back`, async () => {
-    const { viewer, client, scene } = await both(`parts-${size}`, window);
+    const { viewer, client, scene } = await both(`parts-${size}`, { ...window, paused: true });
     const { page } = viewer;
     const before = await scene();
     if (size === "phone") await page.getByRole("button", { name: "Parameters" }).click();
