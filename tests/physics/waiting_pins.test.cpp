@@ -31,7 +31,7 @@ scene::Scene under_a_lid(scene::Method method, bool of_body) {
                 "transform": {"translate": [-0.203, 0.1, -0.107]},
                 "pins": [{"at": {"box": [[-9, -9, -9], [9, 9, 9]]}}]}],
     "self_collision": {"kind": "surface", "thickness": 0.008, "friction": 0.2},
-    "air_drag": 0.5, "solver": {"dt": 0.0005, "iterations": 5}})");
+    "air_drag": 0.5, "solver": {"dt": 0.001, "iterations": 5}})");
   scene.solver.method = method;
   if (of_body) {
     scene.cloths.pop_back();
@@ -65,7 +65,7 @@ TEST_CASE(
       const model::Surfaces surfaces = model::surfaces_of(model);
       INFO(scene::name(method) << (of_body ? " under a cube" : " under a sheet"));
       for (int look = 1; look <= 20; ++look) {
-        simulation->step(100);
+        simulation->step(50);
         const sim::State state = simulation->read_state();
         std::vector<dvec3> places(state.position.begin(), state.position.end());
         for (const dvec3& x : model::body_positions(model, simulation->time()))

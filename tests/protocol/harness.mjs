@@ -51,8 +51,10 @@ const children = new Set();
 if (process.env.NODE_TEST_CONTEXT) after(() => children.forEach((child) => child.kill("SIGKILL")));
 
 export class Server {
+  /// `clothlab serve`. A session that a test has left soon stops: it would take time from the tests that follow.
   static start(...args) {
-    return Server.launch("serve", ...args);
+    const unwatched = args.includes("--unwatched-timeout") ? [] : ["--unwatched-timeout", "2"];
+    return Server.launch("serve", ...unwatched, ...args);
   }
 
   /// `clothlab serve` or `clothlab relay`.

@@ -5,11 +5,11 @@ import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import net from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { after, test } from "node:test";
+import { after, afterEach, test } from "node:test";
 import { Client, patience, runProgram, Server, sleep, withTimeout } from "./harness.mjs";
 
 const servers = [];
-after(() => Promise.all(servers.map((server) => server.stop())));
+afterEach(() => Promise.all(servers.splice(0).map((server) => server.stop())));
 
 async function start(...args) {
   const server = await Server.start(...args);

@@ -6,6 +6,7 @@ import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from "n
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { test } from "node:test";
+import { thorough } from "../thorough.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "clothlab-glsl-"));
 process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
@@ -36,7 +37,9 @@ test("the texts of all programs are strict GLSL", { skip }, () => {
   const files = readdirSync(folder);
   assert.ok(files.length > 1500, `${files.length} texts`);
   for (const stage of [".comp", ".vert", ".geom", ".frag"]) assert.ok(files.some((file) => file.endsWith(stage)));
-  assert.deepEqual([...new Set(wrong(files))], []);
+  // They are named by their hashes, and most lines are in many of them: unless thorough, a third is read.
+  const read = files.filter((_, k) => thorough || k % 3 === 0);
+  assert.deepEqual([...new Set(wrong(read))], []);
 });
 
 test("the check sees a missing conversion, and says which line it is", { skip }, () => {
