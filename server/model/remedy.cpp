@@ -82,7 +82,7 @@ scene::Solver solver_that_holds(const Model& model, const scene::Scene& scene) {
   }
   solver.method = scene::Method::implicit_euler;
   solver.dt = 1.0 / 60.0;
-  solver.iterations = 1;
+  solver.iterations = 10;  // at most: they end where a step is solved
   solver.tolerance = 0.05;
   return solver;
 }

@@ -79,8 +79,10 @@ void ConjugateGradients::bind() const {
   sums_.bind(unit_group_sums);
 }
 
-Work ConjugateGradients::solve(const gl::TextureBuffer& guess, double left_share, Solved& solved) {
-  step_.set("left_share", static_cast<float>(left_share * left_share));  // of a product of two
+Work ConjugateGradients::solve(const gl::TextureBuffer& guess, const Enough& enough, Solved& solved) {
+  // Of a product of two.
+  step_.set("left_share", static_cast<float>(enough.left_share * enough.left_share));
+  step_.set("little", static_cast<float>(enough.little));
   Control control;
   control.groups = groups_;
   control_.upload(&control, sizeof control);

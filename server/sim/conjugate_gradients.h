@@ -45,10 +45,15 @@ class ConjugateGradients {
 
   /// Makes the preconditioner's coarse level for the matrix `fine`. `contacts`: see CoarseLevel::prepare.
   void prepare(const FineLevel& fine, bool contacts) { coarse_.prepare(fine, contacts); }
+  /// What ends a solve besides the tolerance, in the norm of the preconditioner, which is about the energy of
+  /// the error.
+  struct Enough {
+    double left_share = 0;  ///< of the guess's error
+    double little = 0;  ///< twice the energy of a guess that needs no solve [J], if it is in tolerance, too
+  };
   /// Solves for the change of velocity from `guess` on, until the residual is as small as the tolerance asks,
-  /// or the error is about `left_share` of the guess's, in the norm of the preconditioner. The Work fills
-  /// `solved`.
-  Work solve(const gl::TextureBuffer& guess, double left_share, Solved& solved);
+  /// or the error as `enough` says. The Work fills `solved`.
+  Work solve(const gl::TextureBuffer& guess, const Enough& enough, Solved& solved);
 
  private:
   /// The vectors that an iteration leaves to the next one.

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "server/base/text.h"
-#include "server/model/extent.h"
 #include "server/scene/method.h"
 #include "server/sim/kernels.h"
+#include "server/sim/solved.h"
 
 namespace clothlab::sim {
 
@@ -20,10 +20,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A step whose error is a larger share of the largest cloth's extent is unsolved: three pixels where the
-/// cloth fills the 720 lines of a picture. Presets as they ship leave up to 3.4e-3; sheets that sweeps
-/// stretch by 74 % instead of 18 %, 4.5e-3 and more.
-constexpr double solved_share = 3.0 / 720;
 /// The steps from one measurement to the next are worth so many times what it took.
 constexpr double steps_for_one = 20.0;
 /// Or they are so many times those before: what a cloth does first tells little of what it does later.
@@ -197,7 +193,7 @@ void ConvergenceMeasure::count(std::uint64_t step, const scene::Scene& scene, co
                                double spent) {
   ++last_.measured;
   last_.step = step;
-  last_.tolerance = solved_share * model::largest_extent(kernels.model);
+  last_.tolerance = allowed_error(kernels.model, scene.solver.method, scene.solver.dt);
   last_.largest_error = std::max(last_.largest_error, last_.error);
   if (last_.unsolved()) ++last_.unsolved_steps;
   if (last_.unsolved_steps > 0) ++last_.since_first;

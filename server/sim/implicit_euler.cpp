@@ -11,6 +11,7 @@
 
 #include "server/sim/contact_term.h"
 #include "server/sim/implicit_passes.h"
+#include "server/sim/solved.h"
 #include "server/sim/surface_contact.h"
 
 namespace clothlab::sim {
@@ -31,6 +32,14 @@ constexpr double exact_share = 0.1;
 /// Of a solve with contact whose residual has lost its precision to rounding.
 constexpr int most_restarts = 4;
 
+/// Of all vertices that are not pinned [kg].
+double free_mass(const model::Model& model) {
+  double sum = 0.0;
+  for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
+    if (model.pin_motion[i] == model::not_pinned) sum += model.mass[i];
+  return sum;
+}
+
 class ImplicitEuler : public ImplicitPasses {
  public:
   static Result<std::unique_ptr<Integrator>> create(const model::Model& model, const Plan& plan) {
@@ -44,6 +53,8 @@ class ImplicitEuler : public ImplicitPasses {
     most_newton_steps_ = around.scene.solver.iterations;
     solved_way_ = step_solved_share * SurfacePairs::finest_edge(around.model);
     untaken_way_ = std::min(0.1 * solved_way_, untaken_share * gravity_at_least * dt_ * dt_);
+    allowed_ = allowed_error(around.model, scene::Method::implicit_euler, dt_);
+    free_mass_ = free_mass(around.model);
     set_tolerance(around.scene.solver.tolerance);
   }
 
@@ -69,24 +80,25 @@ class ImplicitEuler : public ImplicitPasses {
     // With contact a solve may leave this share of the change to the next Newton step, whose pairs are
     // others: more exactness would be lost (inexact Newton: Dembo, Eisenstat & Steihaug 1982). A Newton step
     // squares the error, so it is the root of what the tolerance asks for in the end.
-    const double left_share = contact_ ? std::sqrt(tolerance_) : 0.0;
+    ConjugateGradients::Enough enough{.left_share = contact_ ? std::sqrt(tolerance_) : 0.0};
     int most = most_newton_steps_;
     for (int newton = 0; newton < most; ++newton) {
       if (contact_ && moved) find_contact(state, false);
       set_up(newton == 0, !moved);
       if (newton == 0) improve_guess();
+      if (newton > 0 && !contact_) enough.little = little();
       if (newton == 0 || contact_)
         solver_.prepare(
             {position_, constraint_, contact_ ? contact_->term()->read() : std::vector<PressingPair>()},
             touches_);
-      co_await solver_.solve(guess_, left_share, solved);
+      co_await solver_.solve(guess_, enough, solved);
       for (int again = 0; contact_ && again < most_restarts && solved.lost_precision; ++again) {
         // The residual is computed anew, of what is solved so far.
         work_.linear_iterations += solved.iterations;
         dispatches_ += solved.dispatches;
         guess_.buffer.copy_from(solved.change->buffer);
         set_up(false, false);
-        co_await solver_.solve(guess_, left_share, solved);
+        co_await solver_.solve(guess_, enough, solved);
       }
       dispatches_ += solved.dispatches;
       ++work_.newton_steps;
@@ -143,6 +155,7 @@ class ImplicitEuler : public ImplicitPasses {
     set_tolerance(precision.tolerance);
     solved_way_ *= exact_share;
     untaken_way_ *= exact_share;
+    allowed_ *= exact_share;
     work_ = {};
     co_await step(state, row);
     spent = work_;
@@ -163,7 +176,8 @@ class ImplicitEuler : public ImplicitPasses {
           most_newton_steps_(of.most_newton_steps_),
           tolerance_(of.tolerance_),
           solved_way_(of.solved_way_),
-          untaken_way_(of.untaken_way_) {}
+          untaken_way_(of.untaken_way_),
+          allowed_(of.allowed_) {}
     ~Uncounted() {
       of_.dispatches_ = dispatches_;
       of_.work_ = work_;
@@ -171,6 +185,7 @@ class ImplicitEuler : public ImplicitPasses {
       of_.set_tolerance(tolerance_);
       of_.solved_way_ = solved_way_;
       of_.untaken_way_ = untaken_way_;
+      of_.allowed_ = allowed_;
     }
     Uncounted(const Uncounted&) = delete;
 
@@ -179,8 +194,15 @@ class ImplicitEuler : public ImplicitPasses {
     std::uint64_t dispatches_;
     SolverWork work_;
     int most_newton_steps_;
-    double tolerance_, solved_way_, untaken_way_;
+    double tolerance_, solved_way_, untaken_way_, allowed_;
   };
+
+  /// The energy [J] of the speed at which the whole cloth would go as far in a step as may be left, twice.
+  /// That of a Newton step, by its own matrix, is no less than its kinetic energy.
+  double little() const {
+    const double speed = allowed_ / dt_;
+    return free_mass_ * speed * speed;
+  }
 
   void set_tolerance(double tolerance) {
     tolerance_ = tolerance;
@@ -266,6 +288,8 @@ class ImplicitEuler : public ImplicitPasses {
   double tolerance_ = 0;        ///< of a linear solve: relative, of the residual
   double untaken_way_ = 0;      ///< the most that a last Newton step may not take [m]
   double solved_way_ = 0;       ///< a Newton step that moves no vertex farther has solved the problem [m]
+  double allowed_ = 0;          ///< without contact Newton steps end where one would go less far [m]
+  double free_mass_ = 0;        ///< of all that is not pinned [kg]
   std::uint32_t pressing_ = 0;  ///< pairs of surfaces that press at the present estimate
   SolverWork work_;
 };

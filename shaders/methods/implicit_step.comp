@@ -12,6 +12,7 @@ READ_VEC4(coarse_factor, unit_coarse_factor);  // see server/sim/coarse_factor.h
 layout(std430, binding = slot_coarse_vectors) buffer CoarseVectors { vec4 coarse_vectors[]; };
 uniform int iteration;  // -1: none, only the coarse level's equations
 uniform float left_share;  // of the first residual times its preconditioned one: see `enough`
+uniform float little;  // [J]: a first guess with no more of that product, within the tolerance, is the solution
 // Of all unknowns of the coarse level: the residual, and what is between it and the correction.
 // Three more fill up the last four.
 #define ROOM (PATCH_UNKNOWNS * MOST_PATCHES + 3)
@@ -92,7 +93,7 @@ void main() {
     }
     step = now / curvature;
     if (own == 0 && iteration == 0) enough = left_share * now;
-    bool met = sum.z <= sum.w || (iteration > 0 && now <= enough);
+    bool met = sum.z <= sum.w || (iteration > 0 ? now <= enough : now <= min(little, sum.w));
     // Or there is no precision left. With contact, whose stiffness differs from pair to pair, a thousandth of two like
     // numbers is their rounding.
 #ifdef CONTACT_TERM
