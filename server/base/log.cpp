@@ -3,10 +3,10 @@
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <ctime>
 #include <iostream>
 
 #include "server/base/text.h"
+#include "server/base/utc.h"
 
 namespace clothlab {
 
@@ -14,19 +14,6 @@ namespace {
 
 constexpr std::array<const char*, 4> names{"error", "warning", "info", "debug"};  // indexed by LogLevel
 std::atomic<LogLevel> log_threshold{LogLevel::info};
-
-/// The present time in UTC, to the millisecond (RFC 3339).
-std::string time_text() {
-  const auto now = std::chrono::system_clock::now();
-  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
-  const auto milliseconds =
-      std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count() % 1000;
-  std::tm calendar{};
-  gmtime_r(&seconds, &calendar);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &calendar);
-  return text + formatted(".%03dZ", static_cast<int>(milliseconds));
-}
 
 std::string quoted(const std::string& value) {
   const auto plain = [](unsigned char c) {
@@ -49,8 +36,8 @@ std::string quoted(const std::string& value) {
 
 void log(LogLevel level, const char* event, const std::vector<LogField>& fields) {
   if (level > log_threshold) return;
-  std::string line =
-      "time=" + time_text() + " level=" + names[static_cast<std::size_t>(level)] + " event=" + event;
+  std::string line = "time=" + utc_text(std::chrono::system_clock::now()) +
+                     " level=" + names[static_cast<std::size_t>(level)] + " event=" + event;
   for (const LogField& field : fields) line += std::string(" ") + field.key + "=" + quoted(field.value);
   std::cerr << line + "\n" << std::flush;  // one write for the whole line, since other threads write too
 }

@@ -1,5 +1,7 @@
 // Results of the lab as CSV (RFC 4180, but with plain line feeds): a header with the units, then one row for
-// each point, cell, trial or variant. A field without a finite number is left empty.
+// each point, cell, trial or variant. A field without a finite number is left empty. Each row ends with what
+// was measured, on what, and when, so that tables of several measurements can be put together.
+#include <array>
 #include <cmath>
 
 #include "server/base/csv.h"
@@ -13,9 +15,12 @@ namespace {
 
 class Table {
  public:
-  explicit Table(const std::string& header) : text_(header) {}
+  template <class Outcome>
+  Table(const Outcome& of, const std::string& header)
+      : text_(header + ",scene_hash,device,date"), end_{of.origin.scene_hash, of.renderer, of.origin.date} {}
 
   Table& row() {
+    end_row();
     text_ += '\n';
     first_ = true;
     return *this;
@@ -39,19 +44,30 @@ class Table {
     if (!cost) return add("").add("").add("");
     return add(cost->median).add(cost->minimum).add(cost->runs);
   }
-  std::string finish() { return text_ + "\n"; }
+  std::string finish() {
+    end_row();
+    return text_ + "\n";
+  }
 
  private:
+  void end_row() {
+    if (!first_)
+      for (const std::string& words : end_) add(words);
+  }
+
   std::string text_;
-  bool first_ = true;
+  std::array<std::string, 3> end_;  ///< of each row
+  bool first_ = true;               ///< the next field is the row's first
 };
 
 const std::string errors_header =
     "position_error_over_size,energy_error_share,strain_error_share,rest_error_over_size";
 const std::string cost_header = "median_ms_per_simulated_s,minimum_ms_per_simulated_s,timed_runs";
 
-std::string of_points(const std::vector<Point>& points) {
-  Table table("method,dt_s,iterations,linear_tolerance," + errors_header +
+template <class Outcome>
+std::string of_points(const Outcome& of, const std::vector<Point>& points) {
+  Table table(
+      of, "method,dt_s,iterations,linear_tolerance," + errors_header +
               ",largest_position_error_over_size,largest_position_error_low,largest_position_error_high," +
               cost_header + ",blew_up_at_s,residual,error_m,dt_over_limit");
   for (const Point& point : points) {
@@ -70,17 +86,17 @@ std::string of_points(const std::vector<Point>& points) {
 }
 
 std::string table_of(const Chart& chart) {
-  return of_points(chart.points);
+  return of_points(chart, chart.points);
 }
 
 std::string table_of(const Choice& choice) {
-  return of_points(choice.tried);
+  return of_points(choice, choice.tried);
 }
 
 std::string table_of(const StabilityMap& map) {
   const std::string unit = map.unit.empty() ? "" : " [" + map.unit + "]";
-  Table table("method,field,value" + unit +
-              ",dt_s,log10_energy_growth,blew_up,theory_s,held_s,failed_s,disagrees,reason");
+  Table table(map, "method,field,value" + unit +
+                       ",dt_s,log10_energy_growth,blew_up,theory_s,held_s,failed_s,disagrees,reason");
   for (const MethodMap& method : map.methods)
     for (const MapColumn& column : method.columns) {
       const auto row = [&](const MapCell* cell) {
@@ -96,8 +112,9 @@ std::string table_of(const StabilityMap& map) {
 }
 
 std::string table_of(const Simplification& simplification) {
-  Table table("variant,measured,reason," + errors_header + ",change_over_size," + cost_header +
-              ",cost_ratio,cost_ratio_low,cost_ratio_high,saves,dt_limit_s,drop,patch");
+  Table table(simplification, "variant,measured,reason," + errors_header + ",change_over_size," +
+                                  cost_header +
+                                  ",cost_ratio,cost_ratio_low,cost_ratio_high,saves,dt_limit_s,drop,patch");
   const auto row = [&](const Variant& variant) {
     table.row().add(variant.name).add(variant.measured).add(variant.reason).add(variant.error);
     table.add(variant.change).add(variant.cost);
@@ -114,7 +131,7 @@ std::string table_of(const Simplification& simplification) {
 }
 
 std::string table_of(const Comparison& comparison) {
-  Table table("time_s,rms_m,most_m");
+  Table table(comparison, "time_s,rms_m,most_m");
   for (const auto& moment : comparison.moments)
     table.row().add(moment->time).add(moment->rms).add(moment->most);
   return table.finish();

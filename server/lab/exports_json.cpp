@@ -87,6 +87,8 @@ json heading(const char* kind, const Result& result) {
   return {{"kind", kind},
           {"scene", result.scene},
           {"renderer", result.renderer},
+          {"scene_hash", result.origin.scene_hash},
+          {"date", result.origin.date},
           {"time_s", number(result.time)},
           {"complete", result.complete},
           {"notes", result.notes}};

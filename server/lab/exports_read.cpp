@@ -94,6 +94,7 @@ template <class Result>
 void read_heading(Result& result, const json& value) {
   result.scene = value.at("scene");
   result.renderer = value.at("renderer");
+  result.origin = {value.at("scene_hash"), value.at("date")};
   result.time = number(value.at("time_s"));
   result.complete = value.at("complete").get<bool>();
   result.notes = texts(value.at("notes"));

@@ -270,7 +270,7 @@ test("it makes no session, and the last comparison of a client is kept until it 
   const other = await enter();
   assert.equal((await other.refusal("lab.moments", { job: second.job, from: 0 })).code, -32602);
   const csv = (await client.request("lab.export", { job: second.job, format: "csv" })).text.trim().split("\n");
-  assert.deepEqual([csv[0], csv.length], ["time_s,rms_m,most_m", 7]);
+  assert.deepEqual([csv[0], csv.length], ["time_s,rms_m,most_m,scene_hash,device,date", 7]);
   assert.match((await client.refusal("lab.export", { job: second.job, format: "svg" })).data.allowed, /json or csv/);
   // of all clients the last four are kept
   const others = [];

@@ -27,6 +27,7 @@ constexpr double share_of_rest = 0.2;          // share of the budget kept for t
 constexpr double useless_error = 0.3;          // a point with a larger error is useless and timed only once
 constexpr double dominated_cost_ratio = 20.0;  // a ladder is left out if other iterations cost this much less
 constexpr double share_of_a_point = 1.0 / 25;  // share of the budget for one point at most
+constexpr double late = 2.0;                   // a point is given up after so many times that
 constexpr double timed = 0.15;                 // wall time of one timing at most [s]
 constexpr int rounds_at_once = 3, rounds_later = 2;
 
@@ -190,8 +191,13 @@ class ChartMeasurement {
         {std::clamp(elapsed() / request_.budget, share_of_truth, 0.99), 1.0, text(point.setting)});
     const scene::Scene scene = with(scene_, point.setting);
     const double long_enough = ladder.price(until()) <= most_a_point() ? until() : horizon();
-    Result<Trial> trial = trials_.run(scene, truth_, long_enough, control_.stop);
+    Result<Trial> trial = trials_.run(scene, truth_, long_enough, control_.stop, late * most_a_point());
     if (!trial) return trial.error();
+    if (trial->late) {
+      leave_out(ladder,
+                "a run had not ended after " + with_significant_digits(late * most_a_point(), 3) + " s");
+      return ok();
+    }
     point.error = trial->error;
     point.largest_position_error = trial->largest_position_error;
     if (trial->convergence.measured > 0) {

@@ -73,8 +73,9 @@ struct AxisFacts {
 };
 
 struct Chart {
-  std::string scene;           ///< the scene's name
-  std::string renderer;        ///< the GL renderer that ran the points
+  std::string scene;     ///< the scene's name
+  std::string renderer;  ///< the GL renderer that ran the points
+  Origin origin{};
   double size = 0;             ///< the cloth's largest extent at rest [m]
   double time = 0;             ///< simulated time of a point at most, from the start [s]
   double horizon = 0;          ///< positions can be compared until this time [s]; 0: never

@@ -10,6 +10,7 @@ namespace clothlab::lab {
 
 struct Choice {
   std::string scene, renderer;
+  Origin origin{};
   double tolerance = 0;          ///< largest RMS position error allowed, over the cloth's size
   double time = 0, horizon = 0;  ///< simulated, and until when positions can be compared [s]
   double reference_error = 0;    ///< RMS position error of the reference itself, over the cloth's size

@@ -42,6 +42,7 @@ struct ComparedSide {
 
 struct Comparison {
   std::string scene, renderer;
+  Origin origin{};
   double time = 0;                ///< simulated by both sides [s]: as asked for, or less
   int rate = 0;                   ///< moments a simulated second
   std::size_t vertices = 0;       ///< of each side

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "server/base/result.h"
+#include "server/lab/measure/origin.h"
 
 namespace clothlab::lab {
 

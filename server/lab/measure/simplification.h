@@ -29,6 +29,7 @@ struct Variant {
 
 struct Simplification {
   std::string scene, renderer;
+  Origin origin{};
   double tolerance = 0, time = 0, horizon = 0, size = 0;
   Setting setting;  ///< the scene's own; a coarser mesh or another model takes the same share of its limit
   Variant whole;    ///< the scene as it is

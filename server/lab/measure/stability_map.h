@@ -40,6 +40,7 @@ struct MethodMap {
 
 struct StabilityMap {
   std::string scene, renderer;
+  Origin origin{};
   std::string field;  ///< JSON Pointer, or "stiffness": all stiffnesses of all cloths times a factor
   std::string unit;   ///< "N/m", "kg", "times the present", ... or empty
   double present_value = 1, present_dt = 0;

@@ -59,6 +59,12 @@ class ErrorsSoFar {
   int count_ = 0;
 };
 
+Trial without_errors(Trial trial) {
+  trial.error = {};
+  trial.largest_position_error.reset();
+  return trial;
+}
+
 }  // namespace
 
 int steps_to_horizon(double dt, const Truth& truth) {
@@ -96,7 +102,7 @@ Result<sim::Simulation*> TrialRunner::prepare(const scene::Scene& scene) {
 }
 
 Result<Trial> TrialRunner::run(scene::Scene scene, const Truth& truth, double until,
-                               const std::stop_token& stop) {
+                               const std::stop_token& stop, double most_wall) {
   const int steps = steps_to_horizon(scene.solver.dt, truth);
   scene.solver.dt = truth.spacing * samples_to_horizon / steps;
   const Result<sim::Simulation*> prepared = prepare(scene);
@@ -121,9 +127,11 @@ Result<Trial> TrialRunner::run(scene::Scene scene, const Truth& truth, double un
     trial.simulated = static_cast<double>(step) * scene.solver.dt;
     if (guard.judge_now() == sim::GuardedRun::Verdict::blown_up) {
       trial.blew_up_at = trial.simulated;
-      trial.error = {};
-      trial.largest_position_error.reset();
-      return trial;
+      return without_errors(std::move(trial));
+    }
+    if (step < last && trial.wall > most_wall) {
+      trial.late = true;
+      return without_errors(std::move(trial));
     }
     if (step % steps_a_sample == 0)
       errors.add(static_cast<int>(step / steps_a_sample) * samples_apart, simulation, guard.state(), trial);

@@ -18,6 +18,7 @@ struct Trial {
   Errors error;                                  ///< [Axis]; none where the run was too short for a sample
   std::optional<double> largest_position_error;  ///< at any sample up to the horizon, over the size
   std::optional<double> blew_up_at;              ///< [s]
+  bool late = false;                             ///< it took too long and was given up: it has no errors
   double wall = 0, simulated = 0;                ///< wall time of stepping alone [s]; simulated time [s]
   sim::Convergence convergence;                  ///< of the last step
   std::vector<glm::vec3> at_horizon;  ///< [vertex] positions [m]; empty: the horizon was not reached
@@ -32,8 +33,10 @@ class TrialRunner {
   Result<sim::Simulation*> prepare(const scene::Scene& scene);
 
   /// Runs `scene` until `until` [s], compares it with the truth's samples on the way, and stops at a blow-up.
-  /// Its step is first shortened so that a whole number of steps makes the horizon. Error: GL, or cancelled.
-  Result<Trial> run(scene::Scene scene, const Truth& truth, double until, const std::stop_token& stop);
+  /// Its step is first shortened so that a whole number of steps makes the horizon. It is given up once its
+  /// stepping has taken `most_wall` [s]. Error: GL, or cancelled.
+  Result<Trial> run(scene::Scene scene, const Truth& truth, double until, const std::stop_token& stop,
+                    double most_wall = std::numeric_limits<double>::infinity());
 
   /// The state of `scene` after `time` [s], rounded to whole steps; none if the run blew up. Error: GL, or
   /// cancelled.
