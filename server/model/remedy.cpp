@@ -21,6 +21,12 @@ double within_safe_share(double limit) {
   return std::max(rounded_down(safe_share * limit), scene::ranges::dt.minimum);
 }
 
+/// The longest stable step [s], if the scene's is near it or beyond.
+double limit_near(const Model& model, const scene::Scene& scene) {
+  return model.vertex_count() <= most_searched ? dt_limit_if_near(model, scene)
+                                               : dt_limit_bound(model, scene);
+}
+
 }  // namespace
 
 double rounded_down(double value) {
@@ -70,11 +76,18 @@ Remedy remedy(const Model& model, const scene::Scene& scene, double limit) {
   return remedy;
 }
 
-scene::Solver solver_that_holds(const Model& model, const scene::Scene& scene) {
+scene::Solver step_that_holds(const Model& model, const scene::Scene& scene) {
   scene::Solver solver = scene.solver;
   if (solver.automatic) return solver;  // the lab chooses a step that holds
-  const double limit =
-      model.vertex_count() <= most_searched ? dt_limit_if_near(model, scene) : dt_limit_bound(model, scene);
+  const double limit = limit_near(model, scene);
+  if (limit > 0.0 && solver.dt > margin_to_warn * limit) solver.dt = within_safe_share(limit);
+  return solver;
+}
+
+scene::Solver solver_that_holds(const Model& model, const scene::Scene& scene) {
+  scene::Solver solver = scene.solver;
+  if (solver.automatic) return solver;  // likewise
+  const double limit = limit_near(model, scene);
   if (solver.dt <= margin_to_warn * limit) return solver;
   if (safe_share * limit >= 0.5 * solver.dt) {
     solver.dt = within_safe_share(limit);

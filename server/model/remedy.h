@@ -29,6 +29,10 @@ Remedy remedy(const Model& model, const scene::Scene& scene, double limit);
 /// Euler, as it does not know why the run has blown up.)
 scene::Solver solver_that_holds(const Model& model, const scene::Scene& scene);
 
+/// The scene's solver with a step under which its method holds, however short. A method that holds at no step
+/// keeps its own.
+scene::Solver step_that_holds(const Model& model, const scene::Scene& scene);
+
 /// Text that compares dt with `limit` [s], to be appended to the reason of a blow-up:
 /// ": dt = 0.0025 s is 1.47 times the longest stable step of ...".
 std::string against_limit(const scene::Solver& solver, double limit);

@@ -40,9 +40,13 @@ Outcome timeline_get(Client& client, Request& request) {
 Outcome timeline_resume(Client& client, Request& request) {
   Params params(request.params);
   constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // JSON numbers are exact up to here
-  const std::int64_t step = params.integer("step", 0, most, std::nullopt);
+  const bool back = params.flag("undo");
+  const std::int64_t step =
+      params.integer("step", 0, most, back ? std::optional<std::int64_t>(0) : std::nullopt);
   if (auto error = params.check()) return *error;
-  return ask_session(client, request, session::ResumeAt{static_cast<std::uint64_t>(step)});
+  session::ResumeAt resume;
+  if (!back) resume.step = static_cast<std::uint64_t>(step);
+  return ask_session(client, request, resume);
 }
 
 Outcome sim_speed(Client& client, Request& request) {

@@ -99,9 +99,10 @@ struct Export {
 };
 /// Asks which steps the session can go on from.
 struct GetTimeline {};
-/// Goes back to this step, and pauses there.
+/// Goes back to this step, and pauses there; none: to where the last such request left the run, with what had
+/// come until then.
 struct ResumeAt {
-  std::uint64_t step = 0;
+  std::optional<std::uint64_t> step;
 };
 /// Tells a job of the lab when the commands before this one are done. Answered by SceneReached.
 struct ReachScene {

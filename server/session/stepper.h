@@ -64,6 +64,10 @@ class Stepper {
     Ticket ticket;
     std::uint64_t until_step = 0;
   };
+  struct Branch {  // of the timeline: what came after a step
+    std::uint64_t after = 0, newest = 0;
+    Timeline timeline;  ///< with it
+  };
   struct Replay {  // on the way from a kept state to a step
     std::uint64_t step = 0;
     std::deque<Timeline::Event> events;
@@ -184,6 +188,9 @@ class Stepper {
   std::size_t most_logged() const;
   bool timeline_awaits_step() const;
   Refusal no_timeline() const;
+  clothlab::Status begin_replay(std::uint64_t step, const Ticket& ticket);
+  Branch exchange_branch(std::uint64_t after, Timeline other);
+  void forget_branch();
   std::uint64_t replay_changes();
   void end_replay();
   // In stepper_commands.cpp.
@@ -246,6 +253,7 @@ class Stepper {
 
   Timeline timeline_;
   std::optional<Replay> replay_;
+  std::optional<Branch> branch_left_;  ///< by the last ResumeAt; its states are set aside in KeptStates
   Recorder recorder_{exchange_, static_cast<std::size_t>(limits_.recording_bytes), limits_.memory};
   std::uint32_t recorded_revision_ = 0;   ///< of the mesh that the recording has
   std::vector<Ticket> ending_recording_;  ///< requests record.stop that wait for the end of the recording

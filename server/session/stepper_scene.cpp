@@ -74,12 +74,14 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
 }
 
 /// If the cloth of `document`, which `patch` has made, would not hold with its solver, changes the solver of
-/// both, and returns it.
+/// both, and returns it. A method that the patch has chosen stays.
 Result<std::optional<json>> Stepper::keep_stable(json& patch, scene::Document& document) const {
   if (const clothlab::Status fits = check_size(document); !fits) return fits.error();
   const Result<model::Model> model = model::build(document.scene);
   if (!model) return model.error();
-  const scene::Solver solver = model::solver_that_holds(*model, document.scene);
+  const bool chosen = document.scene.solver.method != document_.scene.solver.method;
+  const scene::Solver solver = chosen ? model::step_that_holds(*model, document.scene)
+                                      : model::solver_that_holds(*model, document.scene);
   if (solver == document.scene.solver) return std::optional<json>();
   json change{{"method", scene::name(solver.method)},
               {"dt", solver.dt},

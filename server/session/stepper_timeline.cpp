@@ -11,6 +11,7 @@ namespace clothlab::session {
 /// The run begins, or begins anew: nothing before the present state can be reached again.
 void Stepper::begin_timeline() {
   simulation().kept().clear();
+  branch_left_.reset();
   simulation().kept().most = limits_.past_bytes / 2;
   timeline_.begin(document_, scene(), simulation().step_index());
   try {
@@ -27,6 +28,7 @@ void Stepper::begin_timeline() {
 /// where the next step ends.
 void Stepper::forget_timeline() {
   simulation().kept().clear();
+  branch_left_.reset();
   simulation().kept().after_step = true;
   timeline_.begin(document_, scene(), next_step_to_begin(), hands_.for_simulation());
   if (timeline_.bytes() <= most_logged()) return;
@@ -86,6 +88,7 @@ void Stepper::bound_timeline() {
 /// After a blow-up the run goes on from the last good state, with the scene as it is now.
 void Stepper::timeline_went_back() {
   const std::uint64_t step = simulation().step_index();
+  if (branch_left_ && step <= branch_left_->after) forget_branch();
   simulation().kept().drop_after(step);
   if (simulation().kept().count() == 0) return begin_timeline();
   timeline_.cut_after(step);
@@ -110,18 +113,52 @@ void Stepper::perform(GetTimeline&, const Ticket& ticket) {
 void Stepper::perform(ResumeAt& resume, const Ticket& ticket) {
   bound_timeline();
   if (simulation().kept().count() == 0) return reply(ticket, no_timeline());
+  if (!resume.step && !branch_left_)
+    return reply(ticket, Refusal{Refusal::Reason::nothing_there,
+                                 {"", "no run that timeline.resume has left is kept", "go on from here"}});
   const std::uint64_t oldest = simulation().kept().oldest()->step, newest = simulation().step_index();
-  if (resume.step < oldest || resume.step > newest)
-    return reply(ticket, invalid_value({"/step", std::to_string(resume.step),
+  if (resume.step && (*resume.step < oldest || *resume.step > newest))
+    return reply(ticket, invalid_value({"/step", std::to_string(*resume.step),
                                         "a step of the timeline, " + std::to_string(oldest) + " to " +
                                             std::to_string(newest) + "; see timeline.get"}));
-  const std::uint64_t from = simulation().kept().at_or_before(resume.step)->step;
+  Branch other;
+  if (!resume.step) {
+    other = std::move(*branch_left_);
+  } else {
+    simulation().kept().drop_aside();
+    other = {simulation().kept().at_or_before(*resume.step)->step, *resume.step, timeline_};
+  }
+  branch_left_ = exchange_branch(other.after, std::move(other.timeline));
+  if (const clothlab::Status begun = begin_replay(other.newest, ticket); !begun) {
+    timeline_ = std::move(branch_left_->timeline);
+    simulation().kept().exchange_aside(branch_left_->after);
+    forget_branch();
+    reply(ticket, Refusal{Refusal::Reason::failed, begun.error()});
+  }
+}
+
+/// Puts the other branch of the timeline, whose states are set aside, in the place of what came after a step,
+/// and returns that.
+Stepper::Branch Stepper::exchange_branch(std::uint64_t after, Timeline other) {
+  simulation().kept().exchange_aside(after);
+  return {after, simulation().step_index(), std::exchange(timeline_, std::move(other))};
+}
+
+void Stepper::forget_branch() {
+  branch_left_.reset();
+  simulation().kept().drop_aside();
+}
+
+/// On error the run is where it was.
+clothlab::Status Stepper::begin_replay(std::uint64_t step, const Ticket& ticket) {
+  const sim::KeptState* kept = simulation().kept().at_or_before(step);
+  if (!kept) return Error{"", "no state before that step is kept any more", "go on from here"};
+  const std::uint64_t from = kept->step;
   const Timeline::Event then = timeline_.in_force(from);
   free_left_engine();
   Result<MemoryBudget::Reservation> place = place_for(*then.scene);
-  if (!place) return reply(ticket, Refusal{Refusal::Reason::failed, place.error()});
-  if (const clothlab::Status back = simulation().go_to_kept(resume.step, *then.scene); !back)
-    return reply(ticket, Refusal{Refusal::Reason::failed, back.error()});
+  if (!place) return place.error();
+  if (const clothlab::Status back = simulation().go_to_kept(step, *then.scene); !back) return back;
   engine_->memory = std::move(*place);
   (void)simulation().set_hands(*then.hands);  // the kernels are there
   finish_waiting(true);
@@ -129,8 +166,9 @@ void Stepper::perform(ResumeAt& resume, const Ticket& ticket) {
   hands_.clear();
   run_.begin_again();
   run_.pause();
-  timeline_.cut_after(resume.step);
-  replay_.emplace(Replay{resume.step, timeline_.from(from), ticket});
+  timeline_.cut_after(step);
+  replay_.emplace(Replay{step, timeline_.from(from), ticket});
+  return ok();
 }
 
 /// Makes what changed the run before the next step. Returns the steps that follow until something else does.

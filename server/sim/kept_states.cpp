@@ -1,5 +1,7 @@
 #include "server/sim/kept_states.h"
 
+#include <algorithm>
+#include <iterator>
 #include <new>
 #include <utility>
 
@@ -12,7 +14,8 @@ void KeptStates::keep(const std::function<void(KeptState&)>& copy) {
     drop_oldest();
   };
   const std::size_t expected = states_.empty() ? 0 : states_.back().bytes();
-  while (!states_.empty() && (states_.size() >= most_states || bytes() + expected > most)) take_the_oldest();
+  while (!aside_.empty() && lacks_place(expected)) aside_.pop_front();
+  while (!states_.empty() && lacks_place(expected)) take_the_oldest();
   try {
     copy(next);
   } catch (const std::bad_alloc&) {  // a shorter timeline is no reason to fail
@@ -32,8 +35,23 @@ const KeptState* KeptStates::at_or_before(std::uint64_t step) const {
 
 std::size_t KeptStates::bytes() const {
   std::size_t sum = 0;
-  for (const KeptState& state : states_) sum += state.bytes();
+  for (const std::deque<KeptState>* list : {&states_, &aside_})
+    for (const KeptState& state : *list) sum += state.bytes();
   return sum;
+}
+
+bool KeptStates::lacks_place(std::size_t expected) const {
+  return states_.size() + aside_.size() >= most_states || bytes() + expected > most;
+}
+
+void KeptStates::exchange_aside(std::uint64_t step) {
+  std::deque<KeptState> others = std::exchange(aside_, {});
+  const auto first = std::find_if(states_.begin(), states_.end(),
+                                  [step](const KeptState& state) { return state.step > step; });
+  aside_.assign(std::make_move_iterator(first), std::make_move_iterator(states_.end()));
+  states_.erase(first, states_.end());
+  states_.insert(states_.end(), std::make_move_iterator(others.begin()),
+                 std::make_move_iterator(others.end()));
 }
 
 void KeptStates::drop_after(std::uint64_t step) {

@@ -29,7 +29,8 @@ struct KeptState {
   std::size_t bytes() const { return position.bytes() + velocity.bytes() + carried.bytes(); }
 };
 
-/// The oldest are dropped beyond `most_states` and `most` bytes. A single one is kept, however large.
+/// The oldest are dropped beyond `most_states` and `most` bytes. A single one is kept, however large. Those
+/// that are set aside, of a run that was left, count, and are dropped first.
 class KeptStates {
  public:
   static constexpr std::size_t most_states = 256;
@@ -48,10 +49,20 @@ class KeptStates {
   std::size_t bytes() const;
   void drop_oldest() { states_.pop_front(); }
   void drop_after(std::uint64_t step);
-  void clear() { states_.clear(); }
+  void clear() {
+    states_.clear();
+    aside_.clear();
+  }
+
+  /// Exchanges the states after `step` for those that are set aside.
+  void exchange_aside(std::uint64_t step);
+  void drop_aside() { aside_.clear(); }
 
  private:
+  bool lacks_place(std::size_t expected) const;
+
   std::deque<KeptState> states_;  ///< the oldest first
+  std::deque<KeptState> aside_;   ///< likewise
 };
 
 }  // namespace clothlab::sim

@@ -192,6 +192,7 @@ test("requests and their answers are as it says, with and without parameters, fo
     ["inspect.contacts", { most: 0 }],
     ["timeline.get"],
     ["timeline.resume", { step: 0 }],
+    ["timeline.resume", { undo: true }],
     ["lab.jobs"],
     ["record.get"],
     ["record.start", { rate: 60 }],

@@ -168,6 +168,40 @@ test("after a blow-up the timeline goes on from the last good state, and what wa
   await client.close();
 });
 
+test("going back is undone: the run that was left is there again, bit for bit, with all that came in it", async () => {
+  const client = await enter(strip(9));
+  const nothing = await client.refusal("timeline.resume", { undo: true });
+  assert.match(nothing.message, /no run that timeline.resume has left/);
+  const early = await stepTo(client, 400);
+  await patch(client, { gravity: [0, -3, 0] });
+  const middle = await stepTo(client, 1500);
+  await patch(client, { gravity: [0, -5, 0] });
+  const late = await stepTo(client, 2300);
+  const undo = async (step) => {
+    const seen = client.frames.at(-1)?.sequence ?? 0;
+    const answer = await client.request("timeline.resume", { undo: true });
+    assert.deepEqual([answer.step, answer.playing], [step, false]);
+    return bytesOf(await client.frame((frame) => frame.sequence > seen && frame.step === step));
+  };
+  const gravity = async () => (await client.request("scene.get")).document.gravity[1];
+
+  assert.equal(await resume(client, 400), early);
+  await patch(client, { gravity: [0, 4, 0] }); // at the step from which the run goes on
+  const other = await stepTo(client, 2600); // beyond where it was left
+  assert.notEqual(other, late);
+  assert.equal(await undo(2300), late);
+  assert.equal(await gravity(), -5);
+  assert.equal(await resume(client, 1500), middle, "the steps before are those of the run that is back");
+  assert.equal(await undo(2300), late);
+  assert.equal(await undo(1500), middle, "what is undone is kept in its turn");
+  await stepTo(client, 1501);
+
+  await resume(client, 1400);
+  await client.request("sim.reset");
+  assert.match((await client.refusal("timeline.resume", { undo: true })).message, /no run/);
+  await client.close();
+});
+
 test("a reset begins the timeline anew, and a step outside of it is refused with what it has", async () => {
   const client = await enter(strip(5));
   await stepTo(client, 90);
