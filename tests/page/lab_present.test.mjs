@@ -5,6 +5,7 @@ import { load } from "./module.mjs";
 
 const { placeOf } = await load("lab/present");
 const { formerly } = await load("lab/apply");
+const { sizeOf, toleranceText } = await load("lab/tolerance");
 const { numbersOf } = await load("lab/numbers");
 
 const setting = (method, dt_s, iterations = null, tolerance = null) => ({ method, dt_s, iterations, tolerance });
@@ -46,6 +47,24 @@ test("nothing is guessed beyond what was measured: another method, another step,
   assert.match(placeOf(setting("verlet", 0.001), all, "energy").reason, /no point of its curve has this error/);
 });
 
+test("the step that the lab has shortened to meet its samples is that of the scene", () => {
+  const fitted = [point(setting("verlet", 0.000999), 1e-4, 50)];
+  assert.deepEqual(placeOf(setting("verlet", 0.001), fitted, "position"), { error: 1e-4, cost: 50 });
+  assert.match(placeOf(setting("verlet", 0.00105), fitted, "position").reason, /longer than the longest/);
+});
+
+test("a tolerance is told as a share and as a length of the cloth at rest, however it is turned", () => {
+  const cloth = (grid, rotate = [0, 0, 0], scale = 1) => ({ mesh: { grid }, transform: { rotate, scale } });
+  const size = (...cloths) => sizeOf({ cloths });
+  near(size(cloth({ width: 0.6, height: 1 })), 1);
+  near(size(cloth({ width: 0.6, height: 1 }, [90, 0, 0], 2)), 2);
+  near(size(cloth({ width: 1, height: 1 }, [0, 45, 0])), Math.SQRT2); // a square on its corner
+  near(size(cloth({ width: 0.6, height: 1 }), cloth({ width: 3, height: 1 })), 3);
+  assert.equal(size({ ...cloth({}), mesh: { file: "shirt.obj" } }), null);
+  assert.equal(toleranceText(0.01, 1), "1 % of the cloth's size = 10 mm");
+  assert.equal(toleranceText(0.001, null), "0.1 % of the cloth's size");
+});
+
 test("a step between the longest that held and one that blew up has no place, and one beyond it is told so", () => {
   const points = [...verlet, point(setting("verlet", 0.006), null, null, 0.1)];
   assert.match(placeOf(setting("verlet", 0.005), points, "position").reason, /longer than the longest/);
@@ -74,7 +93,7 @@ const scene = {
 test("what a setting replaces is told in words", () => {
   assert.equal(
     formerly(scene, { solver: { method: "xpbd", dt: 0.01, iterations: 10 } }),
-    "method was verlet, dt was 0.001",
+    "method was Verlet, dt was 0.001",
   );
 });
 

@@ -1,5 +1,6 @@
 // What the lab's settings replace in the scene, in words.
 import { valueAt } from "../link/json_patch";
+import { methodText } from "../panel/methods";
 import type { Patch } from "../link/scene_types";
 
 type Tree = Record<string, unknown>;
@@ -16,7 +17,10 @@ export function formerly(document: unknown, patch: Patch): string {
   return changed
     .map(({ path }) => {
       const before = valueAt(document, path);
-      return isContainer(before) ? "" : `${path.split("/").at(-1)} was ${written(before)}`;
+      const key = path.split("/").at(-1);
+      return isContainer(before)
+        ? ""
+        : `${key} was ${key === "method" ? methodText(String(before)).name : written(before)}`;
     })
     .filter((part) => part !== "")
     .join(", ");

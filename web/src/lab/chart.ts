@@ -18,7 +18,7 @@ export class ChartTab extends Tab<"chart"> {
       ["120", "2 minutes"],
       ["600", "10 minutes"],
     ],
-    "120",
+    "60",
   );
   private readonly iterations = makeNumber("1, 2, 4, 8, 16");
   private readonly axisBoxes = new Map<Axis, HTMLInputElement>();

@@ -1,41 +1,12 @@
 // The tab that asks for a tolerance and answers with the cheapest setting that keeps it.
-import { labelled, make, makeButton, makeNumber, numberIn, say } from "./dom";
+import { labelled, make, makeNumber, numberIn, say } from "./dom";
 import { Drawing } from "./drawing";
 import { Picture } from "./picture";
 import { applyButton, curveOf, largestOnTheWay, pointTip, PointTable } from "./points";
 import { Tab, type TabHost } from "./tab";
+import { sizeOf, ToleranceField, toleranceText } from "./tolerance";
 import { comparedText, costRange, costText, errorText, settingText } from "./text";
 import type { Choice, Point } from "./types";
-
-const presets = ["1e-2", "1e-3", "1e-4"];
-
-/// The tolerance typed into `input`, (0, 1]; throws an Error that says what is allowed.
-export function readTolerance(input: HTMLInputElement): number {
-  const tolerance = numberIn(input);
-  if (tolerance === undefined || !(tolerance > 0 && tolerance <= 1)) {
-    throw new Error(
-      `The tolerance is ${input.value.trim() || "empty"}; ` +
-        "allowed is more than 0, up to 1: 0.01 is one percent of the cloth's size.",
-    );
-  }
-  return tolerance;
-}
-
-/// A field for a tolerance, with buttons for the usual values.
-export function toleranceField(input: HTMLInputElement): HTMLElement {
-  input.setAttribute("aria-label", "Tolerance");
-  const buttons = presets.map((text) =>
-    makeButton(text, "lab-small", () => {
-      input.value = text;
-    }),
-  );
-  return make(
-    "div",
-    "lab-tolerance",
-    labelled("Tolerance", input, "RMS position error over the cloth's size"),
-    ...buttons,
-  );
-}
 
 /// The upper bound of a point's error as text: " (at most 1e-3)"; "" where it is unknown or the same as the error.
 function atMost({ largest_position_error: seen, largest_position_error_high: high }: Point): string {
@@ -43,7 +14,7 @@ function atMost({ largest_position_error: seen, largest_position_error_high: hig
 }
 
 export class ChooseTab extends Tab<"choose"> {
-  private readonly tolerance = makeNumber("1e-2", "1e-2");
+  private readonly tolerance = new ToleranceField();
   private readonly time = makeNumber("1", "1");
   private readonly answer = make("p", "lab-answer");
   private readonly cards = make("div", "lab-cards");
@@ -72,6 +43,7 @@ export class ChooseTab extends Tab<"choose"> {
     "All that was tried",
   );
   private result: Choice | null = null;
+  private size: number | null = null; // of the cloth that was measured [m]
 
   constructor(host: TabHost) {
     super("choose", host, {
@@ -82,8 +54,12 @@ export class ChooseTab extends Tab<"choose"> {
     });
     this.addMethods();
     this.addOptions(labelled("simulate [s]", this.time, "how much of the motion is judged"));
-    this.element.querySelector(".lab-start")?.before(toleranceField(this.tolerance));
+    this.element.querySelector(".lab-start")?.before(this.tolerance.element);
     this.content.append(this.answer, this.cards, this.picture.element, this.table.element);
+  }
+
+  override sceneChanged(): void {
+    this.tolerance.follow(this.host.document());
   }
 
   protected override drawn(): string | null {
@@ -92,11 +68,13 @@ export class ChooseTab extends Tab<"choose"> {
 
   protected override params(): Record<string, unknown> {
     const time = numberIn(this.time);
-    return { tolerance: readTolerance(this.tolerance), ...(time === undefined ? {} : { time }) };
+    return { tolerance: this.tolerance.read(), ...(time === undefined ? {} : { time }) };
   }
 
   protected override show(choice: Choice): void {
     this.result = choice;
+    const document = this.host.document();
+    if (document && !this.host.jobs.of("choose").stale) this.size = sizeOf(document);
     this.answer.classList.toggle("unmet", choice.complete && !choice.met);
     say(this.answer, choice.complete ? choice.why : "");
     this.cards.hidden = !choice.complete;
@@ -108,7 +86,7 @@ export class ChooseTab extends Tab<"choose"> {
   private showCards(choice: Choice): void {
     const { chosen, runner_up: runnerUp, present } = choice;
     if (settingText(chosen) === settingText(present)) {
-      const title = choice.met ? `Present, and the best within ${errorText(choice.tolerance)}` : "Present";
+      const title = choice.met ? `Present, and the best within ${this.share(choice.tolerance)}` : "Present";
       this.cards.replaceChildren(
         this.card(title, present, null, "present"),
         ...(runnerUp ? [this.card("Runner-up", runnerUp, present, "")] : []),
@@ -117,7 +95,7 @@ export class ChooseTab extends Tab<"choose"> {
     }
     this.cards.replaceChildren(
       this.card(
-        choice.met ? `The cheapest within ${errorText(choice.tolerance)}` : "The most accurate found",
+        choice.met ? `The cheapest within ${this.share(choice.tolerance)}` : "The most accurate found",
         chosen,
         present,
         "chosen",
@@ -125,6 +103,10 @@ export class ChooseTab extends Tab<"choose"> {
       ...(runnerUp ? [this.card("Runner-up", runnerUp, present, "")] : []),
       this.card("Present", present, null, "present"),
     );
+  }
+
+  private share(of: number): string {
+    return toleranceText(of, this.size);
   }
 
   private card(title: string, point: Point, against: Point | null, className: string): HTMLElement {

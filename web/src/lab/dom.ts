@@ -1,4 +1,5 @@
 // Makes HTML elements for the lab's drawer.
+import { withNames } from "../panel/methods";
 
 type Child = Node | string;
 
@@ -20,8 +21,10 @@ export function makeButton(text: string, className: string, run: () => void): HT
   return made;
 }
 
-/// Sets the text of `place` only when it changed: a screen reader reads a status again each time it is written.
-export function say(place: HTMLElement, text: string): void {
+/// Sets the text of `place`, with the methods' common names, only when it changed: a screen reader reads a status again
+/// each time it is written.
+export function say(place: HTMLElement, words: string): void {
+  const text = withNames(words);
   place.hidden = text === "";
   if (place.textContent !== text) place.textContent = text;
 }

@@ -1,5 +1,6 @@
 // The server's drawing in the page. Its marks can be pointed at, walked with the arrow keys and chosen.
 import { make, makeButton } from "./dom";
+import { withNames } from "../panel/methods";
 
 /// A tooltip. `action` says what a click on the mark does, `compare` what the key C does.
 export interface Tip {
@@ -40,6 +41,7 @@ export interface Place {
 export class Picture {
   readonly element = make("div", "lab-picture");
   private readonly scroller = make("div", "lab-scroller"); // scrolls where the window is too narrow for the drawing
+  private readonly slide = make("p", "lab-slide", "The drawing is wider than this window: slide it sideways.");
   private readonly tooltip = make("div", "lab-tip");
   private drawing: SVGSVGElement | null = null;
   private marks = new Map<string, SVGElement>(); // marks that have a tooltip
@@ -56,7 +58,9 @@ export class Picture {
   ) {
     this.tooltip.hidden = true;
     this.tooltip.setAttribute("role", "tooltip");
-    this.element.append(this.scroller, this.tooltip);
+    this.slide.hidden = true;
+    this.element.append(this.slide, this.scroller, this.tooltip);
+    new ResizeObserver(() => this.tellSlide()).observe(this.scroller);
     this.scroller.addEventListener("scroll", () => this.point(this.shown, this.pinned), { passive: true });
     this.element.addEventListener("pointermove", (event) => {
       if (event.pointerType !== "touch") this.point(this.nearest(event), false);
@@ -85,10 +89,15 @@ export class Picture {
     else this.scroller.append(drawing);
     this.redrawing = false;
     this.drawing = drawing;
+    this.tellSlide();
     this.marks = new Map([...drawing.querySelectorAll<SVGElement>(markSelector)].map((mark) => [keyOf(mark), mark]));
     this.makeReachable(hadFocus);
     this.drawPresent();
     this.point(this.shown, this.pinned);
+  }
+
+  private tellSlide(): void {
+    this.slide.hidden = this.scroller.scrollWidth <= this.scroller.clientWidth + 1;
   }
 
   // Removes what the page says beside the drawing, and the titles that its tooltips replace.
@@ -97,6 +106,8 @@ export class Picture {
     for (const node of drawing.querySelectorAll(`${scripts}, .heading, .notes, [data-index] title, [data-cell] title`))
       node.remove();
     if (this.moves) for (const node of drawing.querySelectorAll(".present:not(.legend *)")) node.remove();
+    for (const node of drawing.querySelectorAll("text, title, tspan"))
+      for (const words of node.childNodes) if (words instanceof Text) words.data = withNames(words.data);
     const { bodyTop, bodyBottom } = drawing.dataset;
     const [left = 0, , width = 0] = (drawing.getAttribute("viewBox") ?? "").split(/[ ,]+/).map(Number);
     if (bodyTop && bodyBottom)

@@ -4,7 +4,7 @@ import { Table } from "./table";
 import { axisNames, costText, errorText, iterationsText, limitText, settingText, solvedText, stepText } from "./text";
 import type { Axis, Point } from "./types";
 import type { Tip } from "./picture";
-import { methodText } from "../panel/methods";
+import { methodText, withNames } from "../panel/methods";
 
 /// The error of a point that is shown, and its name; `size`: size of the cloth [m] if the error is relative to it, else
 /// null.
@@ -143,5 +143,5 @@ export function compareButton(setting: string, compare: () => void): HTMLButtonE
 /// A setting that was not measured, as text: "xpbd, dt 1 ms, 4 iterations: not enough time left".
 export function leftOutText(method: string, dt: number | null, iterations: number | null, reason: string): string {
   const setting = [methodText(method).name, dt === null ? "" : `dt ${stepText(dt)}`, iterationsText(iterations)];
-  return `${setting.filter((part) => part !== "").join(", ")}: ${reason}`;
+  return `${setting.filter((part) => part !== "").join(", ")}: ${withNames(reason)}`;
 }

@@ -15,6 +15,10 @@ interface Sample {
   cost: number;
 }
 
+/// The lab shortens a step so that whole steps reach its samples: within this share a setting is the one measured. By
+/// so little the error changes less than the two digits that are shown.
+const fitted = 0.03;
+
 /// Error on `axis` and cost [ms per simulated second] of `setting`, or the reason why they are not known. Interpolated
 /// in dt along the curve of its method and iterations, in logarithms.
 export function placeOf(setting: Setting, points: Point[], axis: Axis): Place {
@@ -45,7 +49,9 @@ function along(samples: Sample[], dt: number, blown: number[]): Place {
   if (blown.some((failed) => failed <= dt * (1 + slack) && !(upper && failed < upper.dt)))
     return { reason: "steps as long as this blew up" };
   if (samples.length === 0) return { reason: "no point of its curve has this error" };
-  if (!upper) return { reason: `longer than the longest step measured, ${milliseconds(samples.at(-1)?.dt ?? 0)}` };
+  const last = samples.at(-1) as Sample;
+  if (!upper && dt <= last.dt * (1 + fitted)) return { error: last.error, cost: last.cost };
+  if (!upper) return { reason: `longer than the longest step measured, ${milliseconds(last.dt)}` };
   if (Math.abs(upper.dt - dt) <= slack * dt) return { error: upper.error, cost: upper.cost };
   if (!lower) return { reason: `shorter than the shortest step measured, ${milliseconds(upper.dt)}` };
   const share = Math.log(dt / lower.dt) / Math.log(upper.dt / lower.dt);

@@ -3,7 +3,7 @@ import { labelled, make, makeButton, makeNumber, numberIn, say } from "./dom";
 import { Drawing } from "./drawing";
 import { Picture } from "./picture";
 import { applyButton } from "./points";
-import { readTolerance, toleranceField } from "./choose";
+import { ToleranceField, toleranceText } from "./tolerance";
 import { Tab, type TabHost } from "./tab";
 import { Table } from "./table";
 import { costText, errorText, settingText } from "./text";
@@ -32,7 +32,7 @@ function costNode(variant: Variant): Node {
 const isEmpty = (patch: object): boolean => Object.keys(patch).length === 0;
 
 export class SimplifyTab extends Tab<"simplify"> {
-  private readonly tolerance = makeNumber("1e-2", "1e-2");
+  private readonly tolerance = new ToleranceField();
   private readonly time = makeNumber("1", "1");
   private readonly answer = make("p", "lab-answer");
   private readonly applyAll = makeButton("Apply recommended", "lab-primary", () => {
@@ -99,8 +99,12 @@ export class SimplifyTab extends Tab<"simplify"> {
       awaits: "A row for each part: how far the motion changes without it, what that saves, and whether it can go.",
     });
     this.addOptions(labelled("simulate [s]", this.time, "how much of the motion is judged"));
-    this.element.querySelector(".lab-start")?.before(toleranceField(this.tolerance));
+    this.element.querySelector(".lab-start")?.before(this.tolerance.element);
     this.content.append(this.answer, this.applyAll, this.table.element, this.picture.element, this.stepped);
+  }
+
+  override sceneChanged(): void {
+    this.tolerance.follow(this.host.document());
   }
 
   protected override drawn(): string | null {
@@ -109,7 +113,7 @@ export class SimplifyTab extends Tab<"simplify"> {
 
   protected override params(): Record<string, unknown> {
     const time = numberIn(this.time);
-    return { tolerance: readTolerance(this.tolerance), ...(time === undefined ? {} : { time }) };
+    return { tolerance: this.tolerance.read(), ...(time === undefined ? {} : { time }) };
   }
 
   protected override show(result: Simplification): void {
@@ -130,7 +134,7 @@ export class SimplifyTab extends Tab<"simplify"> {
       `All are stepped by ${settingText(result.setting)}. The whole scene costs ` +
         `${costText(result.whole.ms_a_simulated_s)} a simulated second and is ` +
         `${errorText(result.whole.error.position)} off itself; a part may change the motion by ` +
-        `${errorText(result.tolerance)} of the cloth's size.`,
+        `${toleranceText(result.tolerance, result.size_m)}.`,
     );
   }
 

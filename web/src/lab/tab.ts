@@ -3,7 +3,7 @@ import { make, makeButton, makeCheck, say } from "./dom";
 import { working, type Format, type Job, type Jobs } from "./jobs";
 import type { Axis, Kind, Results, Setting } from "./types";
 import { sentence } from "./text";
-import { methodText } from "../panel/methods";
+import { methodText, withNames } from "../panel/methods";
 import type { Patch, SceneDocument } from "../link/scene_types";
 
 /// The page around a tab, as the tab uses it.
@@ -116,7 +116,7 @@ export abstract class Tab<K extends Kind> {
     );
     if (notes.length !== this.noteList.childElementCount) this.notes.open = notes.length <= shownNotes;
     this.notesTitle.textContent = `Notes (${notes.length})`;
-    this.noteList.replaceChildren(...notes.map((note) => make("li", "", note)));
+    this.noteList.replaceChildren(...notes.map((note) => make("li", "", withNames(note))));
     this.show(job.result as Results[K]);
   }
 

@@ -106,6 +106,16 @@ const texts: Record<string, MethodText> = {
 /// The method that the lab chooses; see SolverFacts.
 export const automatic = "auto";
 
+const ids = new RegExp(
+  `\\b(${Object.keys(texts)
+    .filter((id) => id !== "auto")
+    .join("|")})\\b`,
+  "g",
+);
+
+/// A text of the server, which names methods as documents do, with their common names.
+export const withNames = (text: string): string => text.replace(ids, (id) => methodText(id).name);
+
 /// The texts of a method. One that this page does not know is shown by the server's name.
 export function methodText(id: string): MethodText {
   return texts[id] ?? { name: id.replaceAll("_", " "), says: "", iterations: { ...sweeps("", null), solves: true } };
