@@ -36,6 +36,33 @@ browserTest(
   },
 );
 
+browserTest(
+  "each method, chosen on the seed, stays chosen and holds, and one undo takes it and its step back",
+  async () => {
+    const { viewer, client, scene } = await both("methods", { width: 1440, height: 900 });
+    const before = await scene();
+    const menu = viewer.page.getByRole("combobox", { name: "method" });
+    const { methods } = await client.notification("hello");
+    for (const [i, method] of methods.entries()) {
+      // A step of a frame, which explicit methods cannot take: each has to bring its own.
+      await client.request("scene.patch", { patch: { solver: { method: "implicit_euler", dt: 1 / 60 } } });
+      await viewer.until(() => window.clothlab.document.solver.method === "implicit_euler");
+      if (method === "implicit_euler" || method === "auto") continue; // the lab chooses for the latter
+      const label = await menu.locator("option").nth(i).innerText();
+      await menu.selectOption({ label });
+      const { solver } = await eventually(method, scene, (now) => now.solver.method === method);
+      const { time: chosen } = await client.nextNotification("sim.status");
+      await client.nextNotification("sim.status", ({ time }) => time > chosen + 0.3);
+      assert.deepEqual(diverged(client), [], `${method} with ${solver.dt} s`);
+      await viewer.page.keyboard.press("Control+z");
+      await eventually("the solver before", scene, (now) => now.solver.method === "implicit_euler");
+      assert.equal((await scene()).solver.dt, 1 / 60);
+    }
+    assert.deepEqual({ ...(await scene()), solver: before.solver }, before);
+    await client.close();
+  },
+);
+
 browserTest("a finer grid keeps its corners pinned and its mass as a whole, and does not blow up", async () => {
   const { viewer, client, scene } = await both("finer", { width: 1440, height: 900, sharp: thorough });
   const { page } = viewer;

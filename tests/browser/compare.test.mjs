@@ -109,6 +109,9 @@ for (const [size, window] of sizes)
       // both labels and both pictures, apart from each other
       const [a, b] = await Promise.all(["a", "b"].map((side) => page.locator(`.compare-label.${side}`).boundingBox()));
       assert.ok(a && b && (a.x + a.width <= b.x || a.y + a.height <= b.y), JSON.stringify([a, b]));
+      assert.equal(await page.locator("#panel").isVisible(), false, "the panel gives its room");
+      const right = await page.evaluate(() => window.clothlab.stage.area.left + window.clothlab.stage.area.width);
+      assert.equal(right, window.width);
       const shots = await halves(viewer);
       assert.ok(
         shots.every((count) => count > 150),

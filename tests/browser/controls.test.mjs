@@ -354,6 +354,40 @@ browserTest("a status from before the server has heard of a pause does not turn 
   await client.close();
 });
 
+browserTest("who pauses while a preset is being loaded has it paused", async () => {
+  const { viewer, client } = await both("pause-in-load");
+  const page = await (await viewer.page.context().browser().newContext()).newPage();
+  let answer = null;
+  await page.routeWebSocket(/\/ws/, (socket) => {
+    const server = socket.connectToServer();
+    let load = null;
+    socket.onMessage((message) => {
+      const { id, method } = JSON.parse(message);
+      if (method === "scene.load") load = id;
+      server.send(message);
+    });
+    server.onMessage((message) => {
+      if (typeof message === "string" && load !== null && JSON.parse(message).id === load)
+        answer = () => socket.send(message);
+      else socket.send(message);
+    });
+  });
+  await page.goto(`http://${here.server.host}/?session=pause-in-load`);
+  await page.getByLabel("preset", { exact: true }).selectOption("cantilever");
+  await eventually(
+    "the answer, which is held back",
+    async () => answer,
+    (send) => send !== null,
+  );
+  await page.getByRole("button", { name: "Pause", exact: true }).click();
+  await client.nextNotification("sim.status", ({ playing }) => !playing);
+  answer();
+  await client.statuses(3);
+  await client.nextNotification("sim.status", ({ playing }) => !playing);
+  assert.equal(await page.locator("#play").getAttribute("aria-label"), "Play");
+  await client.close();
+});
+
 browserTest("speed, help, fit and hiding: the remaining controls do what they say", async () => {
   const { viewer, client } = await both("keys");
   const { page } = viewer;

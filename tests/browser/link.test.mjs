@@ -25,6 +25,47 @@ browserTest(
   },
 );
 
+browserTest(
+  "a server that has restarted without its state gets the page's own copy back, and stays paused",
+  async () => {
+    const server = await Server.start();
+    const viewer = await open(server);
+    const { page } = viewer;
+    const gravity = viewer.number("World", "gravity y");
+    await gravity.fill("-3");
+    await gravity.press("Enter");
+    await viewer.until(() => window.clothlab.document.gravity[1] === -3);
+    await page.getByRole("button", { name: "Pause", exact: true }).click();
+    const restore = page.getByRole("button", { name: "Restore my scene" });
+    await server.stop("SIGKILL");
+    let again = await Server.start("--port", String(server.port));
+    try {
+      await restore.waitFor();
+      await viewer.until(() => window.clothlab.document.gravity[1] === -9.8);
+      await restore.click();
+      await viewer.until(() => window.clothlab.document.gravity[1] === -3);
+      await restore.waitFor({ state: "detached" });
+      const client = await Client.connect(again, { session: "main" });
+      await client.nextNotification("sim.status", ({ playing }) => !playing); // as the user had last asked for
+      assert.equal((await client.request("scene.get", {})).document.gravity[1], -3);
+      await client.close();
+
+      // a page that is loaded again has the copy, too; one whose scene is there offers nothing
+      await page.waitForFunction(() => sessionStorage.getItem("clothlab-scene-main")?.includes("-3"));
+      await page.reload();
+      await viewer.until(() => window.clothlab?.document?.gravity[1] === -3);
+      assert.equal(await restore.count(), 0);
+      await again.stop("SIGKILL");
+      again = await Server.start("--port", String(server.port));
+      await page.reload();
+      await restore.click();
+      await viewer.until(() => window.clothlab.document.gravity[1] === -3);
+    } finally {
+      await again.stop();
+    }
+  },
+);
+
 browserTest("a server with a token asks for it, refuses a wrong one, and lets the right one in", async () => {
   const server = await Server.start("--token", "spun gold");
   try {

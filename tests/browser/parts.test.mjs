@@ -35,7 +35,14 @@ for (const [size, window] of [
       await press(name);
       const { colliders } = await eventually(`a ${kind}`, scene, (now) => now.colliders.length === count + 1);
       assert.ok(kind in colliders[count]);
+      const called = name.toLowerCase();
+      assert.equal(
+        colliders[count].name,
+        colliders.slice(0, count).some((each) => each.name === called) ? `${called}-2` : called,
+      );
       assert.equal(await revision(), was + 1);
+      if (kind !== "plane")
+        await page.locator(".hand-hint", { hasText: `${colliders[count].name}: move it by its handles` }).waitFor();
     }
     await undo();
     await eventually("no floor", scene, ({ colliders }) => !colliders.some((each) => "plane" in each));

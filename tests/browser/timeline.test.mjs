@@ -92,11 +92,30 @@ for (const [width, height, hasTouch] of [
         (now) => now === from,
       );
       assert.deepEqual(await viewer.positions(), was);
+
+      // taken back: the run as it was, with its scene, its frames and its pace
+      await press(page.getByRole("button", { name: /^Undo: to \d/ }));
+      const back = await client.nextNotification("sim.status", ({ step: now }) => now > shown + 600);
+      assert.equal((await scene()).gravity[1], -3);
+      await client.nextNotification("sim.status", ({ step: now, playing }) => playing && now > back.step);
+      await viewer.until((then) => window.clothlab.lastFrame.header.step > then, back.step);
+      const all = Number(await range.getAttribute("max"));
+      assert.ok(all > at, `${all} frames on the bar`);
+      await lookBack(0.25);
+      await eventually(
+        "the past again",
+        () => step(viewer),
+        (now) => now < early,
+      );
+      const second = await told();
+      await press(page.getByRole("button", { name: "Go on from here" }));
+      await client.nextNotification("sim.status", ({ step: now, playing }) => now === second && !playing);
+      await page.getByRole("button", { name: "Play", exact: true }).waitFor();
       await page.keyboard.press("Space");
       await eventually(
         "it goes on",
         () => step(viewer),
-        (now) => now > from + 50,
+        (now) => now > second + 50,
       );
       await press(page.getByRole("button", { name: "Timeline" }));
       await page.locator("#timeline").waitFor({ state: "hidden" });

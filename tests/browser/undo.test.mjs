@@ -55,6 +55,9 @@ for (const [width, height, hasTouch] of [
     const { name } = await client.request("scene.undo");
     assert.equal(name, "Gravity");
     await page.locator(".notice", { hasText: "Undone: Gravity" }).getByText("By another viewer.").waitFor();
+    assert.equal(await page.locator(".notice", { hasText: "Gravity, by another" }).count(), 0, "its own are not told");
+    await client.request("scene.patch", { patch: { gravity: [0, -4, 0] } });
+    await page.locator(".notice", { hasText: "Gravity, by another viewer" }).waitFor();
     await client.request("scene.load", { preset: "cantilever" });
     await page.getByRole("button", { name: "Undo: Load cantilever" }).waitFor();
     assert.equal(await redo.getAttribute("aria-disabled"), "true");

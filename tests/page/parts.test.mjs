@@ -15,6 +15,8 @@ const server = new URL("../../server/scene/", import.meta.url);
 const schema = JSON.parse(readFileSync(new URL("scene.schema.json", server), "utf8"));
 const program = process.env.CLOTHLAB ?? fileURLToPath(new URL("../../build/release/clothlab", import.meta.url));
 
+const room = { wide: () => 2, taken: () => [{ low: [-1, -1, -1], high: [1, 2, 1] }] }; // [m]: no preset takes more
+
 const deedsIn = (sections) => sections.flatMap(({ deeds = [], sections: inner }) => [...deeds, ...deedsIn(inner)]);
 
 test("every button of every preset", () => {
@@ -27,7 +29,7 @@ test("every button of every preset", () => {
     const deeds = deedsIn(sectionsOf(shown, ["verlet"], []));
     assert.ok(deeds.length >= 5, file);
     for (const [i, { label, change }] of deeds.entries()) {
-      const patch = change(stored, () => 2); // [m]: no cloth of a preset is wider
+      const patch = change(stored, room);
       assert.ok(patch.length > 0, `${file}: ${label}`);
       const after = applyPatch(stored, patch);
       files.push(join(folder, `${file}-${i}.json`));

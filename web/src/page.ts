@@ -5,15 +5,15 @@ import { act } from "./panel/act";
 import { ColourBy } from "./panel/colour_by";
 import { bindCommands } from "./panel/commands";
 import type { Convergence } from "./panel/convergence_gauge";
-import { button, element } from "./panel/dom";
+import { element } from "./panel/dom";
 import type { SolverFacts } from "./panel/field";
 import { Divergence } from "./panel/divergence";
 import type { Stability } from "./panel/gauge";
-import { Hud, type Status } from "./panel/hud";
+import { Hud, keepsUp, type Status } from "./panel/hud";
 import { Refusals } from "./panel/refusals";
 import { Newcomer } from "./panel/newcomer";
 import { InsideDoor } from "./inside/door";
-import { tellMass } from "./panel/kept_mass";
+import { editGrids } from "./panel/kept_mass";
 import { tellKept } from "./panel/kept_stable";
 import { StatusLog } from "./panel/status_log";
 import { Layout } from "./panel/layout";
@@ -21,6 +21,7 @@ import { LinkView } from "./panel/link_view";
 import { Guide } from "./explain/guide";
 import { notice, noticeError, showApplied, type Diverged, type Level } from "./panel/notices";
 import { OpenDoor } from "./open/door";
+import { OwnCopy } from "./panel/own_copy";
 import { Panel } from "./panel/panel";
 import { Presets } from "./panel/presets";
 import { RecordButton } from "./panel/record_button";
@@ -28,9 +29,10 @@ import { bindSaveButtons } from "./panel/save_buttons";
 import { Bodies } from "./link/bodies";
 import { NumbersSource, type Renumbered } from "./link/numbers_source";
 import { LineWatch, type Second } from "./link/line_watch";
+import { bindShare } from "./panel/share_button";
 import { SlowWatch } from "./panel/slow_watch";
 import { SceneStore } from "./link/scene_store";
-import { coarser, masses, withPlaces } from "./link/grid_places";
+import { coarser } from "./link/grid_places";
 import { sessionFault } from "./link/session_name";
 import { Picture } from "./picture";
 import { ShowDoor } from "./show/door";
@@ -50,10 +52,6 @@ import { type History, Undo } from "./panel/undo";
 
 type Params = Record<string, unknown>;
 
-/// The session has new frames to send, as fast as they are asked for.
-const keepsUp = ({ playing, asleep, real_time_factor: factor = 1, speed = 1 }: Status): boolean =>
-  playing === true && !asleep && factor >= 0.9 * speed;
-
 export class Page {
   private stage!: Stage; // set by show(), before the first event of the connection
   private readonly hud = new Hud();
@@ -63,6 +61,11 @@ export class Page {
   private readonly connection = new Connection(this.session, this.linkEvents());
   private readonly link = new LinkView(this.connection);
   private readonly transport = new Transport({ request: (method, params) => this.answered(method, params) });
+  private readonly ownCopy = new OwnCopy(this.session, {
+    mayEdit: () => this.mayEdit,
+    load: (scene) => this.connection.request("scene.load", { scene }),
+    transport: this.transport,
+  });
   private readonly undo: Undo = new Undo({
     request: (method, params) => this.connection.request(method, params),
     settled: (longest) => this.store.settled(longest),
@@ -220,11 +223,12 @@ export class Page {
     bindTimeline({
       picture: this.picture,
       mayEdit: () => this.mayEdit && this.connection.open,
-      resume: (step) => this.connection.request("timeline.resume", { step }),
+      resume: (to) => this.connection.request("timeline.resume", to),
+      transport: this.transport,
       keys: () => this.store.document?.keys ?? [],
       changed: () => layout.cardToggled(),
     });
-    button("share").onclick = () => void this.share();
+    bindShare(() => this.store.stored);
     this.newcomer = new Newcomer(
       {
         mayEdit: () => this.mayEdit,
@@ -240,11 +244,6 @@ export class Page {
         hold: (held) => (this.picture.held = held),
       },
     );
-  }
-
-  private async share(): Promise<void> {
-    const { openShare } = await import("./panel/share");
-    if (this.store.stored) await openShare(this.store.stored);
   }
 
   private makePicture(): Picture {
@@ -276,6 +275,7 @@ export class Page {
         this.slow.link(state === "open");
         if (state !== "open") {
           this.hand?.lost();
+          this.ownCopy.lost();
           this.store.forget();
           this.blowUp.lost();
           this.guide.baseline.lost();
@@ -333,7 +333,8 @@ export class Page {
         handles: (cloth) => this.startState?.giveHandles(cloth),
         act: (deed) =>
           act(deed, {
-            wide: (cloth) => this.startState?.wide(cloth) ?? 0,
+            room: () => this.startState,
+            choose: (body) => this.hand?.chooseBody(body),
             stored: () => this.store.stored,
             request: (method, params) => this.connection.request(method, params),
             refused: (title, error, patch) => this.refusals.tell(title, error, patch),
@@ -343,13 +344,9 @@ export class Page {
     );
   }
 
-  // A grid that gets other rows and columns keeps its pins' places and its mass.
   private edit(operations: Operation[], keepStable?: boolean): void {
-    const document = this.store.expected;
-    if (!document) return;
-    const mass = masses(document, operations, this.guide.baseline.alignedTo(document));
-    this.store.edit([...withPlaces(document, operations), ...mass.operations], keepStable);
-    for (const each of mass.changes) tellMass(each, (more) => this.store.edit(more, true));
+    const now = this.store.expected;
+    if (now) editGrids(this.store, now, this.guide.baseline.alignedTo(now), operations, keepStable);
   }
 
   private makeHand(stage: Stage): Hand {
@@ -424,6 +421,7 @@ export class Page {
       hello: (params) => this.greeted(params),
       scene: (params) => {
         this.guide.baseline.take(params.document as SceneDocument);
+        this.ownCopy.arrived(params.document as SceneDocument, Number(params.revision));
         this.store.replace(params.document as SceneDocument, Number(params.revision));
         this.drawers.arrived();
         void this.newcomer?.arrived(Number(params.revision));
@@ -489,8 +487,9 @@ export class Page {
       this.provoked.load();
       return;
     }
+    const { asked } = this.transport;
     this.connection.request("scene.load", { preset: name }).then(
-      () => this.transport.start(), // who chooses a scene wants to see it move
+      () => asked === this.transport.asked && this.transport.start(), // who chooses a scene wants to see it move
       (error: Error) => this.refusals.tell("The server refused this", error),
     );
   }
@@ -504,6 +503,7 @@ export class Page {
     this.slow.dt = this.hud.dt = document.solver.dt;
     this.picture.moved = [];
     this.refusals.sceneShown(this.store.revision, whole);
+    if (this.store.stored) this.ownCopy.keep(this.store.stored, this.store.revision);
     const newScene = whole && document.name !== this.sceneName;
     if (newScene && this.store.stored) this.guide.baseline.take(this.store.stored); // by a patch, too
     this.sceneName = document.name;

@@ -39,6 +39,13 @@ export class KeptFrames {
     this.first = 0;
   }
 
+  /// These again, in the place of all: the session has gone back to the run that they are of.
+  restore(frames: KeptFrame[]): void {
+    this.frames = frames;
+    this.first = 0;
+    this.bytes = frames.reduce((sum, { frame }) => sum + frame.buffer.byteLength, 0);
+  }
+
   private clear(): void {
     this.frames = [];
     this.first = this.bytes = 0;

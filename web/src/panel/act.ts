@@ -1,7 +1,7 @@
 // Adds or removes a part of the scene, and offers the way back.
 import { keptText } from "./kept_stable";
 import { notice } from "./notices";
-import type { Deed } from "./parts";
+import type { Deed, Room } from "./parts";
 import type { Patch, SceneDocument } from "../link/scene_types";
 
 /// The answer to the patch. `solver`: the server has changed it, too, so that the cloth holds.
@@ -11,8 +11,9 @@ interface Done {
 }
 
 interface Host {
+  room(): Room | null;
   stored(): SceneDocument | null;
-  wide(cloth: number): number; ///< along x, at its start or at present [m]
+  choose(body: number): void; ///< gives it handles, once it is there
   request<T>(method: string, params: Record<string, unknown>): Promise<T>;
   refused(title: string, error: Error, patch?: Patch): void;
 }
@@ -20,10 +21,10 @@ interface Host {
 const toUndo = 14_000; // [ms]
 let closeLast = (): void => undefined; // the button of the last change is the only one
 
-export function act({ says, change, keepStable }: Deed, host: Host): void {
+export function act({ says, change, keepStable, body }: Deed, host: Host): void {
   const stored = host.stored();
   if (!stored) return;
-  const patch = change(stored, (cloth) => host.wide(cloth));
+  const patch = change(stored, host.room() ?? { wide: () => 0, taken: () => [] });
   const done = ({ revision, solver }: Done): void => {
     // Of this change alone: after another one the server refuses it.
     const back = (): void =>
@@ -40,6 +41,7 @@ export function act({ says, change, keepStable }: Deed, host: Host): void {
       stays: true,
     });
     closeLast = close;
+    if (body) host.choose(stored.colliders.length);
     setTimeout(close, toUndo);
   };
   host

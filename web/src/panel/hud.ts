@@ -26,6 +26,10 @@ export interface Status {
   pass_seconds?: Record<string, number>;
 }
 
+/// The session has new frames to send, as fast as they are asked for.
+export const keepsUp = ({ playing, asleep, real_time_factor: factor = 1, speed = 1 }: Status): boolean =>
+  playing === true && !asleep && factor >= 0.9 * speed;
+
 const rows = [
   ["drawn", "Drawn", "frames this page draws each second"],
   ["received", "Received", "frames that arrive each second"],

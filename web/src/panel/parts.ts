@@ -1,15 +1,23 @@
 // Cloths, pins and bodies that come and go: what the panel's buttons for that change in the document.
 import type { Section } from "./field";
+import { type Box, freeName, freePlace } from "../link/free_place";
 import { shiftedCloth } from "../link/shifted_cloth";
 import type { Cloth, Collider, Operation, Pin, SceneDocument, Vec3 } from "../link/scene_types";
+
+/// What the scene takes at its start and at present.
+export interface Room {
+  wide(cloth: number): number; ///< along x [m]
+  taken(): Box[]; ///< by cloths and bodies
+}
 
 /// A button of a section: one change, with what it says when it is done.
 export interface Deed {
   label: string;
   says: string;
   keepStable?: boolean; ///< the solver changes with it where the cloth would not hold
-  /// Of the document as the server keeps it. `wide`: how wide a cloth is along x [m].
-  change(stored: SceneDocument, wide: (cloth: number) => number): Operation[];
+  body?: boolean; ///< it adds a body, which is then chosen
+  /// Of the document as the server keeps it.
+  change(stored: SceneDocument, room: Room): Operation[];
 }
 
 const removal = (label: string, says: string, paths: string[]): Deed => ({
@@ -35,14 +43,14 @@ const copied = (index: number, name: string): Deed => ({
   label: `Copy ${name}`,
   says: `${name} has a copy`,
   keepStable: true,
-  change: ({ cloths }, wide) => {
+  change: ({ cloths }, room) => {
     const cloth = cloths[index] as Cloth;
     const names = new Set(cloths.map((each) => each.name));
     let number = 2;
     while (names.has(`${cloth.name}-${number}`)) ++number;
     const { mesh, transform } = cloth;
     const atRest = "grid" in mesh ? mesh.grid.width * transform.scale : 0;
-    const by: Vec3 = [Number(((number - 1) * gap * Math.max(wide(index), atRest)).toFixed(4)), 0, 0];
+    const by: Vec3 = [Number(((number - 1) * gap * Math.max(room.wide(index), atRest)).toFixed(4)), 0, 0];
     return [{ op: "add", path: `/cloths/${cloths.length}`, value: shiftedCloth(cloth, `${cloth.name}-${number}`, by) }];
   },
 });
@@ -83,22 +91,44 @@ export function bodyDeeds({ colliders }: SceneDocument, body: number): Deed[] {
 
 type Shape = Record<string, unknown>;
 
-/// A body in a row of five places, so that one after another can be seen.
-const body = (label: string, shape: (center: Vec3) => Shape): Deed => ({
+const wished: Vec3 = [0, 0.3, 0.3]; // of a new body [m]
+
+/// A body named after its kind, where nothing is.
+const body = (label: string, half: Vec3, shape: (center: Vec3) => Shape): Deed => ({
   label,
   says: `${label} is there`,
-  change: ({ colliders }) => {
-    const along = ((colliders.length % 5) - 2) * 0.35;
-    const value = { ...shape([along, 0.3, 0.3]), friction: 0.3 } as unknown as Collider;
+  body: true,
+  change: (stored, room) => {
+    const { colliders } = stored;
+    const place = freePlace(wished, half, room.taken(), stored);
+    const name = freeName(label.toLowerCase(), colliders);
+    const value = { name, ...shape(place), friction: 0.3 } as unknown as Collider;
     return [{ op: "add", path: `/colliders/${colliders.length}`, value }];
   },
 });
 
+/// A level plane at 0, or below all that is there.
+const floor: Deed = {
+  label: "Floor",
+  says: "Floor is there",
+  change: ({ colliders }, room) => {
+    const height = Math.min(0, ...room.taken().map(({ low }) => Number((low[1] - 0.01).toFixed(3))));
+    const value = {
+      name: freeName("floor", colliders),
+      plane: { point: [0, height, 0], normal: [0, 1, 0] },
+      friction: 0.3,
+    } as unknown as Collider;
+    return [{ op: "add", path: `/colliders/${colliders.length}`, value }];
+  },
+};
+
 const bodies: Deed[] = [
-  body("Sphere", (center) => ({ sphere: { center, radius: 0.12 } })),
-  body("Box", (center) => ({ box: { center, half: [0.12, 0.12, 0.12] } })),
-  body("Capsule", ([x, y, z]) => ({ capsule: { a: [x - 0.15, y, z], b: [x + 0.15, y, z], radius: 0.06 } })),
-  body("Floor", () => ({ plane: { point: [0, 0, 0], normal: [0, 1, 0] } })),
+  body("Sphere", [0.12, 0.12, 0.12], (center) => ({ sphere: { center, radius: 0.12 } })),
+  body("Box", [0.12, 0.12, 0.12], (center) => ({ box: { center, half: [0.12, 0.12, 0.12] } })),
+  body("Capsule", [0.21, 0.06, 0.06], ([x, y, z]) => ({
+    capsule: { a: [Number((x - 0.15).toFixed(3)), y, z], b: [Number((x + 0.15).toFixed(3)), y, z], radius: 0.06 },
+  })),
+  floor,
 ];
 
 const columns = 25;

@@ -81,6 +81,7 @@ export function solverSection(document: SceneDocument, methods: string[]): Secti
     kind: "choice",
     choices,
     names,
+    keepStable: true,
     note: (values) => ({ text: methodOf(values).says }),
   };
   if (method === automatic) return automaticSection(choice);

@@ -6,11 +6,13 @@ import { notice, noticeError } from "./notices";
 import { longest, mostBytes, type KeptFrame } from "../link/kept_frames";
 import type { Key } from "../link/scene_types";
 import type { Picture } from "../picture";
+import type { Transport } from "./transport";
 
 export interface TimelineHost {
   picture: Picture;
   mayEdit(): boolean;
-  resume(step: number): Promise<unknown>;
+  resume(to: { step: number } | { undo: true }): Promise<unknown>;
+  transport: Pick<Transport, "playing" | "start">;
   keys(): Key[];
   changed(): void; ///< the card came or went
 }
@@ -154,14 +156,34 @@ export class Timeline {
     const shown = this.frames[Number(this.range.value)];
     if (!shown) return;
     const { step, time } = shown.frame.header;
+    const left = this.host.picture.kept.all;
+    const until = left.at(-1)?.frame.header.time ?? time;
+    const { playing } = this.host.transport;
     this.from.disabled = true;
     try {
-      await this.host.resume(step);
+      await this.host.resume({ step });
       this.goLive();
-      notice("info", { title: `Back at ${time.toFixed(3)} s`, lines: ["Paused there. Play goes on from it."] });
+      notice("info", {
+        title: `Back at ${time.toFixed(3)} s`,
+        lines: ["Paused there. Play goes on from it."],
+        actions: [{ label: `Undo: to ${until.toFixed(3)} s`, run: () => this.undo(left, playing) }],
+        stays: true,
+      });
     } catch (error) {
       this.follow();
       noticeError("Not gone back", error as Error);
     }
+  }
+
+  // The frames that were left come back with the run.
+  private undo(left: KeptFrame[], play: boolean): void {
+    this.host.resume({ undo: true }).then(
+      () => {
+        this.host.picture.kept.restore(left);
+        this.goLive();
+        if (play) this.host.transport.start();
+      },
+      (error: Error) => noticeError("Not undone", error),
+    );
   }
 }

@@ -9,6 +9,7 @@ export interface TransportEvents {
 
 export class Transport {
   playing = true;
+  asked = 0; ///< how often playing or not has been asked for here
   private readonly play = button("play");
   private readonly speed = element("speed", HTMLSelectElement);
   // This page's requests that the server has not answered: a status that comes before may be older than they are.
@@ -58,6 +59,7 @@ export class Transport {
   }
 
   private ask(what: "playing" | "speed", method: string, params?: Record<string, unknown>): void {
+    if (what === "playing") ++this.asked;
     ++this.unanswered[what];
     void this.events.request(method, params).then(() => --this.unanswered[what]);
   }

@@ -69,14 +69,18 @@ export class Undo {
 
   told(history: History): void {
     const { last } = history;
-    if (this.history && last && last.what !== "change")
-      notice("info", {
-        title: `${words[last.what].done}: ${last.name}`,
-        lines: last.by === this.client ? [] : ["By another viewer."],
-      });
+    if (this.history && last) this.name(last);
     this.history = history;
     this.show();
     this.host.told(history);
+  }
+
+  // What others do is named, and this viewer's own undoing: his changes he sees in the panel.
+  private name({ what, name, by }: NonNullable<History["last"]>): void {
+    const another = by !== this.client;
+    if (what === "change") {
+      if (another) notice("info", { title: `${name}, by another viewer` });
+    } else notice("info", { title: `${words[what].done}: ${name}`, lines: another ? ["By another viewer."] : [] });
   }
 
   /// Undoes or redoes a change. With a revision only if nobody has changed the scene since.

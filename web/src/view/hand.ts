@@ -45,6 +45,10 @@ export class Hand {
   chooseCloth(index: number): void {
     this.handles.chooseCloth(index);
   }
+  /// Gives a body handles, once the document has it.
+  chooseBody(index: number): void {
+    this.handles.chooseBody(index);
+  }
   /// The document has changed.
   sceneChanged(): void {
     this.handles.follow();

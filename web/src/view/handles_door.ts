@@ -8,6 +8,7 @@ export class HandlesDoor {
   private handles: Handles | null = null;
   private loading: Promise<typeof import("./handles")> | null = null;
   private readonly picker: Picker;
+  private awaited: number | null = null; // the body that is chosen once it is there
 
   constructor(
     private readonly stage: Stage,
@@ -37,6 +38,12 @@ export class HandlesDoor {
     if (this.stage.frame?.header.step === 0) this.with((handles) => handles.chooseCloth(index));
   }
 
+  /// Chooses the body of this number, once the document has it.
+  chooseBody(index: number): void {
+    this.awaited = index;
+    this.follow();
+  }
+
   /// Chooses the next body, for keys.
   chooseNext(): void {
     this.with((handles) => handles.chooseNext());
@@ -50,6 +57,10 @@ export class HandlesDoor {
   /// The document has changed.
   follow(): void {
     this.handles?.follow();
+    const index = this.awaited;
+    if (index === null || !this.events.document()?.colliders[index]) return;
+    this.awaited = null;
+    this.with((handles) => handles.choose({ of: "body", index }));
   }
   toggleMode(): void {
     this.handles?.toggleMode();

@@ -1,6 +1,6 @@
 // Finds what the pointer is on: the cloth's nearest vertex, by a ray through the triangles of the frame on screen.
 import { type Box3, type PerspectiveCamera, Ray, Raycaster, Vector2, Vector3 } from "three";
-import { boxOf, Places } from "./places";
+import { Places } from "./places";
 import type { Stage } from "./stage";
 import type { Frame, Topology } from "../link/protocol";
 
@@ -107,14 +107,6 @@ export class Picker {
       if (distance < (best?.distance ?? Infinity)) best = { vertex, place, distance };
     }
     return best;
-  }
-
-  /// How wide the cloth of this number is along x [m]; 0 before there is one.
-  wide(cloth: number): number {
-    const range = this.topology?.cloths[cloth];
-    if (!this.frame || !range) return 0;
-    const { min, max } = boxOf(this.frame, range);
-    return max.x - min.x;
   }
 
   onScreen(place: Vector3): Vector2 | null {

@@ -1,5 +1,7 @@
 // Cloths as they start: how wide they are then, and their handles, which move them there.
-import { Picker } from "./picking";
+import { Box3 } from "three";
+import type { Box } from "../link/free_place";
+import { boxOf } from "./places";
 import type { Stage } from "./stage";
 
 export interface StartEvents {
@@ -9,28 +11,39 @@ export interface StartEvents {
 }
 
 export class StartState {
-  private widths: number[] = []; // along x [m]
+  private boxes: Box3[] = []; // of the cloths
   private waiting: number | null = null; // the cloth that gets handles once it is back at its start
-  private readonly picker: Picker;
 
   constructor(
     private readonly stage: Stage,
     private readonly events: StartEvents,
-  ) {
-    this.picker = new Picker(stage);
-  }
+  ) {}
 
   /// A frame is on screen.
   drawn(step: number): void {
     if (step !== 0) return;
-    this.widths = (this.picker.topology?.cloths ?? []).map((_, cloth) => this.picker.wide(cloth));
+    this.boxes = this.present;
     if (this.waiting !== null) this.events.chooseCloth(this.waiting);
     this.waiting = null;
   }
 
   /// How wide a cloth is along x, at its start or at present [m].
   wide(cloth: number): number {
-    return Math.max(this.widths[cloth] ?? 0, this.picker.wide(cloth));
+    const wide = (box: Box3 | undefined): number => (box ? box.max.x - box.min.x : 0);
+    return Math.max(wide(this.boxes[cloth]), wide(this.present[cloth]));
+  }
+
+  /// What cloths take at their start and at present, and bodies.
+  taken(): Box[] {
+    const bodies = this.stage.colliders.bodies.map(({ mesh }) => new Box3().setFromObject(mesh));
+    return [...this.boxes, ...this.present, ...bodies]
+      .filter((box) => !box.isEmpty())
+      .map(({ min, max }) => ({ low: min.toArray(), high: max.toArray() }));
+  }
+
+  private get present(): Box3[] {
+    const { frame, cloth } = this.stage;
+    return frame ? (cloth.topology?.cloths ?? []).map((range) => boxOf(frame, range)) : [];
   }
 
   /// Goes to the start and gives this cloth handles.
