@@ -14,11 +14,11 @@ export class ChartTab extends Tab<"chart"> {
   private readonly budget = makeSelect(
     [
       ["20", "20 s"],
-      ["60", "1 minute"],
+      ["45", "45 s"],
       ["120", "2 minutes"],
       ["600", "10 minutes"],
     ],
-    "60",
+    "45",
   );
   private readonly iterations = makeNumber("1, 2, 4, 8, 16");
   private readonly axisBoxes = new Map<Axis, HTMLInputElement>();

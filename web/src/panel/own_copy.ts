@@ -19,6 +19,14 @@ export interface OwnCopyHost {
 const most = 1_000_000; // characters: a tab keeps about 5 million
 const writtenEvery = 1000; // [ms]
 
+function read(text: string | null): Copy | null {
+  try {
+    return text === null ? null : (JSON.parse(text) as Copy);
+  } catch {
+    return null; // not this page's
+  }
+}
+
 export class OwnCopy {
   private copy: Copy | null;
   private readonly key: string;
@@ -31,8 +39,7 @@ export class OwnCopy {
     private readonly host: OwnCopyHost,
   ) {
     this.key = `clothlab-scene-${session}`;
-    const text = inTab.get(this.key);
-    this.copy = text === null ? null : (JSON.parse(text) as Copy);
+    this.copy = read(inTab.get(this.key));
   }
 
   lost(): void {
