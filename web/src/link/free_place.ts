@@ -9,7 +9,7 @@ export interface Box {
 
 const gap = 0.03; // that stays free around it [m]
 const spacing = 0.1; // of the places that are tried [m]
-const farthest = 20; // of them along an axis, either way
+const farthest = 15; // of them along an axis, either way
 
 type Plane = { point: Vec3; normal: Vec3 };
 
@@ -30,7 +30,8 @@ const behind = (place: Vec3, half: Vec3, { point, normal }: Plane): boolean =>
 function tried(): Vec3[] {
   const line = Array.from({ length: 2 * farthest + 1 }, (_, i) => i - farthest);
   const all = line.flatMap((x) => line.flatMap((y) => line.map((z): Vec3 => [x, y, z])));
-  return all.sort((one, other) => Math.hypot(...one) - Math.hypot(...other));
+  const away = ([x, y, z]: Vec3): number => x * x + y * y + z * z;
+  return all.sort((one, other) => away(one) - away(other));
 }
 
 /// The place nearest to the `wished` one where what is `half` as large along each axis meets nothing that is taken and
