@@ -342,7 +342,7 @@ browserTest(
     await panel.getByRole("button", { name: "Find the cheapest" }).click();
     await page.getByText(/The tolerance is 200; allowed is/).waitFor();
     await panel.getByRole("button", { name: "1 %", exact: true }).click();
-    await panel.getByText("% of the cloth's size = 5 mm").waitFor(); // of 0.5 m
+    await panel.getByText("% of the cloth's size = 10 mm").waitFor(); // of 1 m
     await start(panel, "Find the cheapest");
     await finished(panel);
     assert.match(await panel.locator(".lab-answer").innerText(), /^\S.{20,}/);
