@@ -6,6 +6,7 @@
 #include <string>
 #include <system_error>
 
+#include "server/model/dress.h"
 #include "server/model/near_start.h"
 #include "server/model/stability.h"
 #include "server/model/sweep_stretch.h"
@@ -43,6 +44,7 @@ void print_warnings(const model::Model& model, const scene::Scene& scene, double
       model::near_start_warning(model, scene), model::step_warning(scene.solver, dt_limit),
       model::sweeps_warning(model, scene)};
   for (const std::string& note : scene::mesh_notes(scene)) warnings.push_back(note);
+  if (const std::string led_out = model::dressed_note(model); !led_out.empty()) note(about + led_out);
   for (const std::string& warning : warnings) {
     if (warning.empty()) continue;
     std::cout.flush();

@@ -27,7 +27,8 @@ using scene::json;
 // Contact keeps surfaces a tenth of an edge apart, within what cloth and the air between its layers measure
 // [m].
 constexpr double thickness_over_edge = 0.1, least_thickness = 1e-4, most_thickness = 3e-3;
-constexpr double friction = 0.3;     // cotton on skin or cotton: 0.2 to 0.5
+constexpr double friction = 0.3;                // cotton on skin or cotton: 0.2 to 0.5
+constexpr double seconds_of_leading_out = 1.0;  // 500 steps: 125 edges
 constexpr double held_share = 0.03;  // of the height, at the top, where nothing else carries the cloth
 
 struct Box {
@@ -62,7 +63,13 @@ class Fitting {
     if (const Status chosen = choose_steps(); !chosen) return chosen.error();
     Result<scene::Document> whole = scene::validate(document_, assets_);
     if (!whole) return whole.error();
-    const Result<model::Model> model = model::build(whole->scene);
+    Result<model::Model> model = model::build(whole->scene);
+    if (!model && model.error().facts.find("crossings") != std::string::npos) {
+      lead_out();
+      whole = scene::validate(document_, assets_);
+      if (!whole) return whole.error();
+      model = model::build(whole->scene);
+    }
     if (!model) return model.error();
     if (const Status written = replace_file(request_.out, document_.dump(2) + "\n"); !written)
       return written.error();
@@ -117,6 +124,11 @@ class Fitting {
     chosen_.push_back("the files are taken to be in another unit: scaled by " +
                       with_significant_digits(scale_, 4) + " all of them measure " +
                       with_significant_digits(size * scale_, 3) + " m");
+  }
+
+  void lead_out() {
+    for (json& cloth : document_["cloths"]) cloth["start"] = {{"dress", seconds_of_leading_out}};
+    chosen_.push_back("the files have cloth that goes through a body or itself: it is led out at the start");
   }
 
   void hold_top() {

@@ -25,37 +25,44 @@ struct Side {
   bool operator<(const Side& other) const { return std::tie(low, high) < std::tie(other.low, other.high); }
 };
 
-/// The triangles of the parts that are closed: parts share no vertex.
-std::vector<Corners> closed_parts(const Corners* first, Index triangle_count, Index first_vertex,
-                                  Index vertex_count) {
-  std::vector<Index> root(vertex_count);
+}  // namespace
+
+std::vector<BodyPart> parts_of(const Model& model, std::uint32_t number) {
+  const BodyRange& body = model.bodies[number];
+  const Corners* first = model.body_triangles.data() + body.first_triangle;
+  std::vector<Index> root(body.vertex_count);
   std::iota(root.begin(), root.end(), 0u);
   const auto part = [&](Index vertex) {
-    Index i = vertex - first_vertex;
+    Index i = vertex - model.vertex_count() - body.first_vertex;
     while (root[i] != i) i = root[i] = root[root[i]];
     return i;
   };
   std::vector<Side> sides;
-  sides.reserve(3 * std::size_t{triangle_count});
-  for (Index t = 0; t < triangle_count; ++t)
+  sides.reserve(3 * std::size_t{body.triangle_count});
+  for (Index t = 0; t < body.triangle_count; ++t)
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const Index a = first[t][corner], b = first[t][(corner + 1) % 3];
       sides.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
       root[part(a)] = part(b);
     }
   std::sort(sides.begin(), sides.end());
-  std::vector<bool> open(vertex_count, false);  // by the part's root
+  std::vector<bool> open(body.vertex_count, false);  // by the part's root
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     int balance = 0;
     for (end = begin; end < sides.size() && !(sides[begin] < sides[end]); ++end)
       balance += sides[end].direction;
     if (balance != 0) open[part(sides[begin].low)] = true;
   }
-  std::vector<Corners> closed;
-  for (Index t = 0; t < triangle_count; ++t)
-    if (!open[part(first[t][0])]) closed.push_back(first[t]);
-  return closed;
+  std::vector<BodyPart> parts;
+  parts.reserve(body.triangle_count);
+  for (Index t = 0; t < body.triangle_count; ++t) {
+    const Index of = part(first[t][0]);
+    parts.push_back({of, open[of]});
+  }
+  return parts;
 }
+
+namespace {
 
 /// How often the border of a triangle winds around the point, seen along x: 1, 0 or -1. A point on a side
 /// counts to one of the two triangles there: that to which the side, gone upwards, lies to the left of it.
@@ -71,14 +78,17 @@ int winding_seen_along_x(const std::array<dvec3, 3>& corner, const dvec3& point)
   return winding;
 }
 
-std::vector<std::array<dvec3, 3>> placed_corners(const Model& model, const BodyRange& body,
+/// The corners of the triangles of closed parts.
+std::vector<std::array<dvec3, 3>> placed_corners(const Model& model, std::uint32_t number,
                                                  const std::vector<dvec3>& position) {
   std::vector<std::array<dvec3, 3>> placed;
   const Index first = model.vertex_count();
-  for (const auto& [a, b, c] :
-       closed_parts(model.body_triangles.data() + body.first_triangle, body.triangle_count,
-                    first + body.first_vertex, body.vertex_count))
+  const std::vector<BodyPart> parts = parts_of(model, number);
+  for (std::size_t t = 0; t < parts.size(); ++t) {
+    if (parts[t].open) continue;
+    const auto& [a, b, c] = model.body_triangles[model.bodies[number].first_triangle + t];
     placed.push_back({position[a - first], position[b - first], position[c - first]});
+  }
   return placed;
 }
 
@@ -157,7 +167,7 @@ std::vector<dvec3> body_positions(const Model& model, double time) {
 }
 
 BodyInside::BodyInside(const Model& model, std::uint32_t body, const std::vector<dvec3>& position)
-    : triangles_(placed_corners(model, model.bodies[body], position)),
+    : triangles_(placed_corners(model, body, position)),
       boxes_(boxes_of(triangles_)),
       tree_(boxes_),
       farthest_(std::numeric_limits<double>::lowest()) {

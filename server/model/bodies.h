@@ -20,6 +20,14 @@ void add_bodies(Model& model, const scene::Scene& scene);
 /// Where the vertices of all bodies are at `time` [s] [body_vertex_count] [m].
 std::vector<dvec3> body_positions(const Model& model, double time);
 
+/// What hangs together in a body: parts share no vertex.
+struct BodyPart {
+  std::uint32_t number;  ///< the same for all triangles of the part
+  bool open;             ///< it has no inside (BodyInside)
+};
+/// The part of each of the body's triangles, in their order. `body` is an index into Model::bodies.
+std::vector<BodyPart> parts_of(const Model& model, std::uint32_t body);
+
 /// Tells whether points are inside a body. Only a closed part has an inside: one whose edges each have as
 /// many triangles that go along them in one direction as in the other. An open part is a sheet, and cloth may
 /// be on either side of it.

@@ -12,6 +12,7 @@
 #include "server/model/adjacency.h"
 #include "server/model/bodies.h"
 #include "server/model/clean_start.h"
+#include "server/model/dress.h"
 #include "server/model/mesh_arrays.h"
 #include "server/model/sheet.h"
 #include "server/model/start.h"
@@ -219,6 +220,7 @@ Result<Model> build(const scene::Scene& scene) {
   between_pieces();
   add_bodies(model, scene);
   between_pieces();
+  dress(model, scene);
   if (Status clean = check_start(model, scene); !clean) return clean.error();
   between_pieces();
   list_neighbours(model, scene.collides(scene::ContactKind::points));

@@ -68,14 +68,6 @@ std::string corners(const std::string& what, const std::array<std::uint32_t, cou
   return text + " of " + in_words(place_of(vertices[0], model, scene));
 }
 
-/// The positions as the GPU gets them.
-std::vector<dvec3> as_floats(const std::vector<dvec3>& x) {
-  std::vector<dvec3> rounded;
-  rounded.reserve(x.size());
-  for (const dvec3& each : x) rounded.emplace_back(glm::vec3(each));
-  return rounded;
-}
-
 std::string number(double x) {
   return with_significant_digits(x == 0.0 ? 0.0 : x, 4);  // no "-0"
 }
@@ -134,13 +126,22 @@ std::string list_of(const Crossings& found, const Model& model, const scene::Sce
   return found.count > told ? text + ", ..." : text;
 }
 
+/// What was tried, or can be.
+std::string led_out_in_words(const Model& model) {
+  return model.dressed ? formatted(", after %.3g s of leading out", model.dressed->seconds) : "";
+}
+std::string lead_out(const Model& model) {
+  return model.dressed ? "; or more seconds of \"dress\", if fewer crossings were left than there had been"
+                       : "; or `\"start\": {\"dress\": 1}` of the cloth, which leads it out before time 0";
+}
+
 Status check_cloths(const Model& model, const scene::Scene& scene, bool at_present,
                     const std::vector<dvec3>& x, const std::string& remedy) {
   const Crossings found = find_crossings(surfaces_of(model, Bodies::none), x, at_start);
   if (found.count == 0) return ok();
   return Error{"/self_collision/kind",
                std::string("\"surface\", but ") + (at_present ? "the cloth at present" : "the start") +
-                   " has " + list_of(found, model, scene),
+                   (at_present ? "" : led_out_in_words(model)) + " has " + list_of(found, model, scene),
                "\"points\", which may have crossings, or " + remedy,
                facts_of(found, model, scene, at_present, x)};
 }
@@ -154,9 +155,9 @@ Status check_bodies(const Model& model, const scene::Scene& scene, const std::ve
   const Crossing& first = found.first[0];
   const Place body = place_of(std::max(first.edge[0], first.triangle[0]), model, scene);
   return Error{"/colliders/" + std::to_string(body.index),
-               "\"" + body.name + "\", and cloth that goes through triangles at the start, with " +
-                   list_of(found, model, scene),
-               "body and cloth moved apart (transform, start) until none touches the other",
+               "\"" + body.name + "\", and cloth that goes through triangles at the start" +
+                   led_out_in_words(model) + ", with " + list_of(found, model, scene),
+               "body and cloth moved apart (transform, start) until none touches the other" + lead_out(model),
                facts_of(found, model, scene, false, x)};
 }
 
@@ -193,9 +194,11 @@ Status check_inside(const Model& model, const scene::Scene& scene, const std::ve
       return Error{pointer,
                    "\"" + scene.colliders[model.bodies[body].collider].name + "\", and inside it vertex " +
                        std::to_string(of.number) + " of " + in_words(of) +
-                       ", with all cloth that hangs on it, at the start",
-                   "cloth that starts outside (transform, start), or a mesh that is open: it has no inside, "
-                   "and cloth stays on its side of each triangle"};
+                       ", with all cloth that hangs on it, at the start" + led_out_in_words(model),
+                   "cloth that starts outside (transform, start" +
+                       std::string(model.dressed ? "" : "; `{\"dress\": 1}` leads it out") +
+                       "), or a mesh that is open: it has no inside, "
+                       "and cloth stays on its side of each triangle"};
     }
   }
   return ok();
@@ -224,7 +227,8 @@ Status check_start(const Model& model, const scene::Scene& scene) {
   if (surfaces)
     if (Status apart = check_cloths(
             model, scene, false, x,
-            "cloths moved apart (transform, mesh, start) until none touches another one or itself");
+            "cloths moved apart (transform, mesh, start) until none touches another one or itself" +
+                lead_out(model));
         !apart)
       return apart;
   if (!has_meshes) return ok();

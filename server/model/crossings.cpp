@@ -79,6 +79,13 @@ bool meets(const dvec3& p, const dvec3& q, const dvec3& a, const dvec3& b, const
   return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
 }
 
+std::vector<dvec3> as_floats(const std::vector<dvec3>& x) {
+  std::vector<dvec3> rounded;
+  rounded.reserve(x.size());
+  for (const dvec3& each : x) rounded.emplace_back(glm::vec3(each));
+  return rounded;
+}
+
 Surfaces surfaces_of(const Model& model, Bodies bodies) {
   Surfaces surfaces{model.triangles, {}, model.vertex_count()};
   for (const BodyRange& body : model.bodies) {

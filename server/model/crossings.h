@@ -27,6 +27,9 @@ struct Surfaces {
   bool among_cloths = true;  ///< false: cloths are compared with bodies alone
 };
 
+/// The positions as the GPU gets them.
+std::vector<dvec3> as_floats(const std::vector<dvec3>& x);
+
 /// The surfaces of all cloths, and of which bodies.
 enum class Bodies { none, meshes, all };
 Surfaces surfaces_of(const Model& model, Bodies bodies = Bodies::all);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,6 +40,14 @@ struct BodyRange {
 
 inline constexpr std::int32_t not_pinned = -1;
 
+/// What leading cloth out at the start did ("start": {"dress": seconds}).
+struct Dressed {
+  std::uint32_t vertices = 0;  ///< that moved
+  double farthest = 0;         ///< of them [m]
+  double seconds = 0;          ///< of leading out until nothing crossed, or all there were [s]
+  bool done = false;           ///< nothing crosses
+};
+
 /// Everything the simulation needs that does not change while it runs.
 struct Model {
   std::vector<dvec3> rest_position;            ///< [vertex_count] [m], after the transform; pins move from it
@@ -55,6 +64,7 @@ struct Model {
   /// Empty in a scene without self-collision.
   Adjacency contact_exclusions;
   std::vector<ClothRange> cloths;
+  std::optional<Dressed> dressed;  ///< if cloth asks to be led out
 
   // Bodies of triangles, which the scene moves. Where a list holds vertices of both, those of bodies come
   // after those of cloths, as body_triangles counts them.

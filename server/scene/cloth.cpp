@@ -62,9 +62,11 @@ std::vector<Weight> read_weights(const Reader& weights, const Mesh& mesh) {
 
 Start read_start(const Reader& start) {
   if (start.is_null()) return std::monostate{};
-  const Words kinds = {"scatter", "scale"};
+  const Words kinds = {"scatter", "scale", "dress"};
   start.object(kinds);
-  if (start.exactly_one(kinds) == "scale") return Stretch{start.member("scale").vector(ranges::start_scale)};
+  const std::string kind = start.exactly_one(kinds);
+  if (kind == "dress") return Dress{start.member("dress").number(ranges::dress)};
+  if (kind == "scale") return Stretch{start.member("scale").vector(ranges::start_scale)};
   const Reader scatter = start.member("scatter");
   scatter.object({"size", "seed"});
   return Scatter{scatter.member("size").number(ranges::length),

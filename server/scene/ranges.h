@@ -40,6 +40,7 @@ inline constexpr Range damping_time{0, 10, "s"};
 
 inline constexpr Range start_scale{-1e3, 1e3};
 inline constexpr Range seed{0, 1e9};
+inline constexpr Range dress{1e-3, 10, "s"};
 
 inline constexpr Range friction{0, 10};
 inline constexpr Range restitution{0, 1};

@@ -184,9 +184,14 @@ struct Stretch {
   dvec3 scale{1.0};
   bool operator==(const Stretch&) const = default;
 };
+/// Free vertices start in the rest shape, led out of bodies and of cloth (model/dress.h).
+struct Dress {
+  double seconds = 0.5;  ///< of leading out, at most [s]
+  bool operator==(const Dress&) const = default;
+};
 /// Where the free vertices are at time 0; monostate: in the rest shape. Rest lengths always come from the
 /// rest shape.
-using Start = std::variant<std::monostate, Scatter, Stretch>;
+using Start = std::variant<std::monostate, Scatter, Stretch, Dress>;
 
 struct Cloth {
   std::string name = "cloth";

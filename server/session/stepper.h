@@ -211,6 +211,7 @@ class Stepper {
   void warn_if_thin();
   void warn_if_slipping();
   void warn_if_near();
+  void tell_if_led_out();
   void warn_of_meshes();
   // In stepper.cpp.
   void advance(Clock::time_point now, std::uint32_t others);
@@ -304,6 +305,7 @@ class Stepper {
   bool layers_may_pass_ = false;         ///< layers of cloth can pass through each other
   bool solids_may_slip_ = false;         ///< solids can pass through triangles of cloth
   std::string near_start_;               ///< model::near_start_warning of the present cloth
+  std::string led_out_;                  ///< model::dressed_note of the present cloth
   std::vector<std::string> mesh_notes_;  ///< told of the present scene (scene::mesh_notes)
 };
 

@@ -298,7 +298,10 @@ void Stepper::take_over(scene::Document document, sim::ChangeDepth depth) {
   announce_parts();
   announce_solver();
   if (depth == sim::ChangeDepth::none) return;
-  if (depth == sim::ChangeDepth::cloth) warn_if_near();
+  if (depth == sim::ChangeDepth::cloth) {
+    warn_if_near();
+    tell_if_led_out();
+  }
   warn_if_thin();
   warn_if_slipping();
   warn_of_meshes();

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/base/text.h"
+#include "server/model/dress.h"
 #include "server/model/near_start.h"
 #include "server/model/thickness.h"
 #include "server/scene/method.h"
@@ -115,6 +116,13 @@ void Stepper::warn_if_near() {
   std::string warning = model::near_start_warning(simulation().model(), scene());
   if (!warning.empty() && warning != near_start_) exchange_.emit(Notice{"warning", warning});
   near_start_ = std::move(warning);
+}
+
+// Tells once what was done to a start that was led out.
+void Stepper::tell_if_led_out() {
+  std::string note = model::dressed_note(simulation().model());
+  if (!note.empty() && note != led_out_) exchange_.emit(Notice{"info", note});
+  led_out_ = std::move(note);
 }
 
 // Tells each note of the scene's meshes once, until the scene no longer has it.

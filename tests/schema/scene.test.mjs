@@ -99,7 +99,11 @@ const whole = {
       weights: [{ at: "vertex:1", mass: 1 }],
       start: { scale: [1, 0, -1] },
     },
-    { mesh: { file: "leaf.obj", pattern: "uv", pattern_scale: 2, node: null, mend: true }, pins: [{ at: "vertex:3" }] },
+    {
+      mesh: { file: "leaf.obj", pattern: "uv", pattern_scale: 2, node: null, mend: true },
+      pins: [{ at: "vertex:3" }],
+      start: { dress: 0.5 },
+    },
   ],
   colliders: [
     { name: "ball", sphere: { center: [0, 0.6, 0], radius: 0.25 }, friction: 0.3, restitution: 0, motion: linear },
@@ -270,6 +274,7 @@ function* mutations() {
           per_vertex: 1,
           scale: [1, 1, 1],
           scatter: { size: 1 },
+          dress: 0.5,
           mass: 1,
           box: [
             [0, 0, 0],

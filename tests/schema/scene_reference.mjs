@@ -34,7 +34,7 @@ const tables = [
   ],
   ["`pins[]`", ["$defs", "cloth", "properties", "pins", "items"]],
   ["`weights[]`", ["$defs", "cloth", "properties", "weights", "items"]],
-  ["`start: {scatter}` or `{scale}`", ["$defs", "cloth", "properties", "start"]],
+  ["`start: {scatter}`, `{scale}` or `{dress}`", ["$defs", "cloth", "properties", "start"]],
   ["A collider: `colliders[]`", ["$defs", "collider"]],
   ["The shapes of colliders", ["$defs", "shape", "properties"]],
   ["`motion`, of a pin or a collider", ["$defs", "motion"]],

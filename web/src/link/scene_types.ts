@@ -47,7 +47,7 @@ export interface Weight {
   at: At;
   mass: number;
 }
-export type Start = null | { scatter: { size: number; seed: number } } | { scale: Vec3 };
+export type Start = null | { scatter: { size: number; seed: number } } | { scale: Vec3 } | { dress: number };
 
 export interface Springs {
   model: "springs";

@@ -5,7 +5,7 @@ const keys = `version name gravity cloths colliders self_collision wind air_drag
   mesh grid columns rows width height file obj node mend pattern pattern_scale vertices triangles
   sphere plane capsule box point normal a b center half radius at place transform translate rotate scale
   mass per_vertex area_density material model fabric structural warp weft twist poisson shear bend bending damping grain
-  strain_limit pins weights start scatter size seed kind thickness friction restitution
+  strain_limit pins weights start scatter size seed dress kind thickness friction restitution
   motion oscillate linear spin axis amplitude frequency degrees_per_second velocity gust gust_frequency drag lift
   color texture method dt iterations tolerance keys of ease`.split(/\s+/);
 const rank = new Map(keys.map((key, i) => [key, i]));
