@@ -137,6 +137,18 @@ browserTest("an edit refused for crossings is applied with points instead, by on
   await client.close();
 });
 
+browserTest("an edit refused for crossings of the start leads the cloth out, by one button", async () => {
+  const { viewer, client, scene } = await refusedPage("crossings-led-out");
+  await refusal(viewer.page).getByRole("button", { name: "Lead it out" }).press("Enter");
+  const applied = await eventually("the edit", scene, (now) => now.self_collision.kind === "surface");
+  assert.deepEqual(
+    applied.cloths.map(({ start }) => start),
+    [{ dress: 1 }, { dress: 1 }],
+  );
+  await viewer.page.locator("#notices .notice", { hasText: "led out at the start" }).waitFor();
+  await client.close();
+});
+
 browserTest("the figures have the counts of contact between surfaces while there are any", async () => {
   const { viewer, client } = await both("crossings-figures");
   await viewer.figures();

@@ -185,6 +185,21 @@ browserTest("cloth that would go through the body stands beside it, with the wor
   await client.close();
 });
 
+browserTest("cloth that would go through the body is led out of it, by one button", async () => {
+  const { viewer, client, scene } = await both("led-out", { width: 1440, height: 900 });
+  const { page } = viewer;
+  const dialog = await choose(page, [
+    ["tight.obj", tube({ radius: 0.19 })],
+    ["figure.obj", figure()],
+  ]);
+  await dialog.getByRole("button", { name: "Open", exact: true }).click();
+  await told(page, /passing through a body, in \d+ places/);
+  await page.getByRole("button", { name: "Lead it out" }).click();
+  const [cloth] = (await eventually("it is put on", scene, (now) => now.cloths[0]?.start)).cloths;
+  assert.deepEqual([cloth.start, cloth.transform.translate], [{ dress: 1 }, [0, 0, 0]]);
+  await client.close();
+});
+
 browserTest("what is no mesh is refused by its line; a cancelled file changes nothing", async () => {
   const { viewer, client, scene } = await both("refused");
   const { page } = viewer;

@@ -149,6 +149,7 @@ export class Page {
     show: (crossings) => this.stage.showCrossings(crossings),
     hide: () => this.stage.hideCrossings(),
     send: (instead) => this.request("scene.patch", { patch: instead }),
+    stored: () => this.store.stored,
   });
   private hand: Hand | null = null; // with the stage, as the next
   private startState: StartState | null = null;

@@ -4,6 +4,7 @@ import type { Vec3 } from "./scene_types";
 
 /// An edge or a triangle of a cloth or a body.
 export interface CrossingPart {
+  cloth?: number; ///< its place in the list of cloths; none: it is a body's
   name: string; ///< the cloth's, or the collider's
   vertices: number[]; ///< as the document numbers them
   at: Vec3[]; ///< [m]

@@ -5,9 +5,9 @@ import { holds, sizeText, type Unit, units, type Up } from "./guess";
 import { type Answers, type Aside, beside, contact, extent, falls, patchFor, thicknessIn } from "./scene";
 import { content, freeName, largestMessage, type Uploaded, withBuffers } from "../link/mesh_upload";
 import { RpcError } from "../link/rpc";
-import type { Operation, Patch, SceneDocument, Vec3 } from "../link/scene_types";
+import type { Operation, SceneDocument, Vec3 } from "../link/scene_types";
 import { shiftedPlace } from "../link/shifted_cloth";
-import { crossingLines, ofCloth } from "../panel/crossings";
+import { crossingLines, ofCloth, start } from "../panel/crossings";
 import { methodText } from "../panel/methods";
 import { type Action, notice, noticeError } from "../panel/notices";
 import { secondsText } from "../panel/solver_section";
@@ -201,7 +201,7 @@ function tellAside(answers: Answers, stored: SceneDocument, aside: Aside, refusa
   const first = answers.fresh ? 0 : stored.cloths.length;
   const cloths = answers.items.filter(({ role }) => role === "cloth").length;
   // As far back as it was put aside: the user may have moved and scaled it meanwhile.
-  const back = (): Patch => [
+  const back = (): Operation[] => [
     ...(host.stored()?.cloths ?? []).slice(first, first + (moved ? cloths : 0)).map(
       ({ transform: { translate } }, i): Operation => ({
         op: "replace",
@@ -213,9 +213,11 @@ function tellAside(answers: Answers, stored: SceneDocument, aside: Aside, refusa
   ];
   const last = refusals[refusals.length - 1] as RpcError;
   const crossings = last.data.crossings;
-  const again = (): void => {
-    const patch = back();
-    host.request("scene.patch", { patch, name: "Put in place" }).then(
+  const leadOut = (): Operation[] =>
+    Array.from({ length: cloths }, (_, i) => ({ op: "add", path: `/cloths/${first + i}/start`, value: start }));
+  const again = (name: string, more: Operation[]): void => {
+    const patch = [...back(), ...more];
+    host.request("scene.patch", { patch, name }).then(
       () => host.play(),
       (error: Error) => {
         if (error instanceof RpcError && error.data.crossings) tellAside(answers, stored, aside, [error], host);
@@ -235,7 +237,8 @@ function tellAside(answers: Answers, stored: SceneDocument, aside: Aside, refusa
     closed: () => host.hideCrossings(),
     actions: [
       ...(crossings ? [{ label: "Show me", keeps: true, run: () => host.showCrossings(crossings) }] : []),
-      { label: moved ? "Put it back" : "Try surfaces", run: again },
+      { label: "Lead it out", run: () => again("Lead out", leadOut()) },
+      { label: moved ? "Put it back" : "Try surfaces", run: () => again("Put in place", []) },
     ],
   });
 }

@@ -1,7 +1,7 @@
 // The refusal of a scene whose surfaces already pass through each other: where, and what to do instead.
 import { notice } from "./notices";
 import type { Crossings, CrossingPart, RpcError } from "../link/rpc";
-import type { Patch } from "../link/scene_types";
+import type { Patch, SceneDocument } from "../link/scene_types";
 
 const mostNamed = 3;
 export const ofCloth = "/self_collision/kind"; // the place of a refusal for cloth that meets cloth; else it meets a body
@@ -10,12 +10,30 @@ interface Host {
   show(crossings: Crossings): void;
   hide(): void;
   send(patch: Patch): void;
+  stored(): SceneDocument | null;
 }
+
+/// A start that leads cloth out of what it goes through, in a second at most.
+export const start = { dress: 1 };
 
 /// The same patch, but for the kind of self-collision: points, which may have crossings.
 export function underPoints(patch: Patch): Patch {
   if (Array.isArray(patch)) return [...patch, { op: "replace", path: "/self_collision/kind", value: "points" }];
   return { ...patch, self_collision: { ...(patch.self_collision as object | undefined), kind: "points" } };
+}
+
+/// The same patch, and the cloths that cross are led out.
+function ledOut(patch: Patch, { pairs }: Crossings, stored: SceneDocument | null): Patch {
+  const cloths = new Set(pairs.flatMap(({ edge, triangle }) => [edge.cloth, triangle.cloth]));
+  if (Array.isArray(patch))
+    return [
+      ...patch,
+      ...[...cloths].flatMap((cloth) =>
+        cloth === undefined ? [] : [{ op: "add" as const, path: `/cloths/${cloth}/start`, value: start }],
+      ),
+    ];
+  const all = (Array.isArray(patch.cloths) ? patch.cloths : (stored?.cloths ?? [])) as object[];
+  return { ...patch, cloths: all.map((cloth, i) => (cloths.has(i) ? { ...cloth, start } : cloth)) };
 }
 
 const named = ({ vertices, name }: CrossingPart): string => `${vertices.join("-")} of ${name}`;
@@ -47,6 +65,9 @@ export function tellCrossings(title: string, error: RpcError, patch: Patch, host
     closed: () => host.hide(),
     actions: [
       { label: "Show me", keeps: true, run: () => host.show(crossings) },
+      ...(crossings.when === "start"
+        ? [{ label: "Lead it out", run: () => host.send(ledOut(patch, crossings, host.stored())) }]
+        : []),
       ...(path === ofCloth ? [{ label: "Use points instead", run: () => host.send(underPoints(patch)) }] : []),
     ],
   });

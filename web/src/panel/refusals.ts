@@ -2,12 +2,13 @@
 import { tellCrossings } from "./crossings";
 import { notice, noticeError } from "./notices";
 import { type Crossings, errorGivenUp, RpcError } from "../link/rpc";
-import type { Patch } from "../link/scene_types";
+import type { Patch, SceneDocument } from "../link/scene_types";
 
 interface Host {
   show(crossings: Crossings): void;
   hide(): void;
   send(patch: Patch): void;
+  stored(): SceneDocument | null;
 }
 
 export class Refusals {
