@@ -14,8 +14,8 @@ const int summands = 16;
 int rolled(int count) { return vertex_count > 0 ? count : 0; }
 #endif
 
-/// Replaces each of the values by its sum over the work group, in every lane or in the first one. It takes two rounds: in
-/// software OpenGL a barrier costs more than a few sums in a row.
+/// Replaces each of the values by its sum over the work group, in every lane or in the first one. It takes two rounds:
+/// in software OpenGL a barrier costs more than a few sums in a row.
 void sums_of_group(inout vec4 value[SUMS_AT_ONCE], const bool everywhere) {
   int lane = int(gl_LocalInvocationID.x);
   for (int s = 0; s < SUMS_AT_ONCE; ++s) sums[s][lane] = value[s];

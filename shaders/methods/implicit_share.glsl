@@ -2,7 +2,8 @@
 // with CONTACT_TERM implicit_term.glsl.
 
 /// The largest share that the next smaller one does not beat: by a hundredth, as rounding must not decide; and by a
-/// half where contact makes further Newton steps, which find the rest sooner than a shorter way does. `found`: the totals of what implicit_search.comp writes.
+/// half where contact makes further Newton steps, which find the rest sooner than a shorter way does. `found`: the
+/// totals of what implicit_search.comp writes.
 #ifdef CONTACT_TERM
 const float beaten_by = 0.5;
 #else
