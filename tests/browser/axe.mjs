@@ -7,8 +7,8 @@ import { arrived } from "./browser.mjs";
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
 const rules = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"];
 
-/// What axe-core finds wrong, each with the elements and the reason. Of the whole page it takes a second: unless the run
-/// is thorough, it looks at the elements that the selector `card` names alone.
+/// What axe-core finds wrong, each with the elements and the reason. Of the whole page it takes a second: unless the
+/// run is thorough, it looks at the elements that the selector `card` names alone.
 export async function violations({ page }, when, card = "html") {
   await arrived(page);
   if (!(await page.evaluate(() => "axe" in window))) await page.evaluate(axe);

@@ -123,8 +123,8 @@ export function withServer(...args) {
     server: null,
     /// `options.server`: a server other than the file's.
     open: (options = {}) => browser.open(options.server ?? here.server, options),
-    /// A page and a script on the same session, and a function that reads the server's scene. `paused`: the cloth stands
-    /// still, as its steps take the time that the page needs.
+    /// A page and a script on the same session, and a function that reads the server's scene. `paused`: the cloth
+    /// stands still, as its steps take the time that the page needs.
     async both(session, { paused = false, ...options } = {}) {
       const viewer = await here.open({ session, width: 1280, height: 800, ...options });
       const client = await Client.connect(options.server ?? here.server, { session });
