@@ -40,7 +40,8 @@ Outcome timeline_get(Client& client, Request& request) {
 Outcome timeline_resume(Client& client, Request& request) {
   Params params(request.params);
   constexpr std::int64_t most = (std::int64_t{1} << 53) - 1;  // JSON numbers are exact up to here
-  const bool back = params.flag("undo");
+  const bool back = params.has("undo"), said = params.flag("undo");
+  if (back && (!said || params.has("step"))) params.refuse("undo", "true, and no step beside it");
   const std::int64_t step =
       params.integer("step", 0, most, back ? std::optional<std::int64_t>(0) : std::nullopt);
   if (auto error = params.check()) return *error;

@@ -41,7 +41,7 @@ browserTest("step 2 lets the scene blow up in view, says why, and after the reme
   await again(page).waitFor();
   const { solver } = await scene();
   assert.ok(solver.dt > before.solver.dt && solver.method === before.solver.method, JSON.stringify(solver));
-  assert.match(await show(page).innerText(), /energy of motion.*grew from.*longest stable step of symplectic_euler/s);
+  assert.match(await show(page).innerText(), /energy of motion.*grew from.*longest stable step of Symplectic Euler/s);
   const { end, allowed } = await energies(page);
   assert.ok(allowed > 0 && end > allowed, `${end} J, of ${allowed}`);
   const last = Number(await moment(page).getAttribute("max"));

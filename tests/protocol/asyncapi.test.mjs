@@ -96,7 +96,8 @@ test("the server takes each parameter up to the limits that the document gives, 
       assert.equal(code, -32602, `${name} ${JSON.stringify(params)}`);
       return data.path;
     };
-    if (name !== "scene.load") assert.equal(await pathFor({}), "/surplus", name);
+    // Sets of parameters, of which a message has one, are tried one by one below.
+    if (!paramsOf(name)?.oneOf) assert.equal(await pathFor({}), "/surplus", name);
     for (const [parameter, schema] of Object.entries(properties)) {
       if (parameter === "scene") continue; // tests/schema/scene.test.mjs tests it
       const { good, bad } = candidates(schema);

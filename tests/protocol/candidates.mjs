@@ -20,6 +20,7 @@ const numbers = ({ type, minimum, maximum }) => ({
 /// Values { good, bad } for a schema.
 export function candidates(given) {
   const schema = resolved(given);
+  if (schema.const === true) return { good: [true], bad: [false, 1, "true", []] };
   if (schema.enum)
     return { good: schema.enum, bad: ["no such", 5, ...schema.enum.map((value) => value.toUpperCase())] };
   switch (schema.type) {
