@@ -117,8 +117,8 @@ test("it tells which vertex in frames each vertex of a mesh's file is, where num
     { name: "grid", mesh: { grid: { columns: 2, rows: 2 } } },
     { name: "sheet", mesh: { file: "sheet.obj" } },
   ];
-  await client.request("record.start");
   await client.request("scene.load", { scene: { version: 1, name: "numbered", cloths } });
+  await client.request("record.start");
   await recorded(1);
   await client.request("record.stop");
   const { recording } = await read(await (await get(`/api/recording.clothlab?session=${session}`)).arrayBuffer());
