@@ -26,6 +26,7 @@ using Index = std::uint32_t;
 constexpr double most_of_edge = 0.25;      // what a vertex moves in a step, over the mean edge
 constexpr double settling_of_edge = 0.05;  // the same while lengths settle
 constexpr double moved_of_edge = 0.01;     // a vertex that moved less is not counted
+constexpr int most_put_back = 8;           // rounds of vertices that would cross, in a step of settling
 /// Lengths have settled once the sum of squared strains falls by less than this share of it in a step.
 constexpr double settled = 0.02;
 
@@ -39,7 +40,8 @@ class Dressing {
         start_(cloth_.x),
         bodies_(as_floats(body_positions(model, 0.0))),
         among_cloths_(scene.collides(scene::ContactKind::surface)),
-        clearance_(among_cloths_ ? scene.self_collision->thickness : 0.1 * cloth_.mean_edge()),
+        clearance_(among_cloths_ ? std::min(scene.self_collision->thickness, cloth_.mean_edge())
+                                 : 0.1 * cloth_.mean_edge()),
         skin_(model, scene, bodies_, clearance_),
         surfaces_(surfaces_of(model, Bodies::meshes)) {
     surfaces_.among_cloths = among_cloths_;
@@ -99,7 +101,8 @@ class Dressing {
     const double most = settling_of_edge * cloth_.mean_edge();
     if (among_cloths_) demand_untangled(cloth_, {}, clearance_, most, demands);
     cloth_.relax(demands, most);
-    for (bool clean = false; !clean;) {
+    bool clean = false;
+    for (int round = 0; !clean && round < most_put_back; ++round) {
       std::set<Index> back;
       for (const Crossing& each : crossings())
         for (const Index vertex :
@@ -109,7 +112,7 @@ class Dressing {
       clean = back.empty();
     }
     std::vector<Demand> unused;
-    if (skin_.demand_outside(cloth_, unused) > 0) {
+    if (!clean || skin_.demand_outside(cloth_, unused) > 0) {
       cloth_.x = before;
       return false;
     }
@@ -124,10 +127,6 @@ class Dressing {
   Skin skin_;
   Surfaces surfaces_;
 };
-
-}  // namespace
-
-namespace {
 
 struct Found {
   std::string key;
@@ -218,8 +217,11 @@ void dress(Model& model, const scene::Scene& scene) {
 }
 
 std::string dressed_note(const Model& model) {
-  if (!model.dressed || !model.dressed->done) return {};
+  if (!model.dressed) return {};
   const auto& [vertices, farthest, seconds, done] = *model.dressed;
+  if (!done)
+    return formatted("after %.3g s of leading out, cloth is still in a solid: give \"dress\" more seconds",
+                     seconds);
   if (vertices == 0) return "the start crosses nothing: no cloth was led out";
   return formatted("cloth was led out at the start in %.3g s: %u %s moved, the farthest by %.3g mm", seconds,
                    vertices, vertices == 1 ? "vertex" : "vertices", 1000.0 * farthest);

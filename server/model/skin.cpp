@@ -130,9 +130,13 @@ void Skin::choose_sides(const DressCloth& cloth) {
   farther_.assign(cloth.x.size(), 0.0);
   inside_.assign(cloth.x.size(), false);
   reach_ = 2.0 * std::max(clearance_, cloth.mean_edge());
+  Pieces pieces;
+  for (Index i = 0; i < cloth.x.size(); ++i) {
+    pieces.next();
+    inside_[i] = cloth.moves(i) && contained(cloth.x[i]);
+  }
   if (faces_[true].empty()) return;
   std::vector<double> balance(sides_.size(), 0.0);
-  Pieces pieces;
   for (const dvec3& x : cloth.x) {
     pieces.next();
     Nearest found;

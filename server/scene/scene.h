@@ -186,7 +186,7 @@ struct Stretch {
 };
 /// Free vertices start in the rest shape, led out of bodies and of cloth (model/dress.h).
 struct Dress {
-  double seconds = 0.5;  ///< of leading out, at most [s]
+  double seconds = 0.0;  ///< of leading out, at most [s]
   bool operator==(const Dress&) const = default;
 };
 /// Where the free vertices are at time 0; monostate: in the rest shape. Rest lengths always come from the

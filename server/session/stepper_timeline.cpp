@@ -113,6 +113,7 @@ void Stepper::perform(GetTimeline&, const Ticket& ticket) {
 void Stepper::perform(ResumeAt& resume, const Ticket& ticket) {
   bound_timeline();
   if (simulation().kept().count() == 0) return reply(ticket, no_timeline());
+  if (simulation().kept().lost_aside()) forget_branch();
   if (!resume.step && !branch_left_)
     return reply(ticket, Refusal{Refusal::Reason::nothing_there,
                                  {"", "no run that timeline.resume has left is kept", "go on from here"}});

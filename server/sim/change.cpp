@@ -1,6 +1,7 @@
 // Finds out how much of a simulation a change of scene replaces, by comparing the two scenes before anything
 // is changed.
 #include <algorithm>
+#include <variant>
 
 #include "server/sim/plan.h"
 #include "server/sim/simulation.h"
@@ -63,6 +64,14 @@ scene::Scene without_looks(scene::Scene scene) {
   return scene;
 }
 
+/// True if cloth is led out of what is there at its start, and that is other than before.
+bool led_out_otherwise(const scene::Scene& from, const scene::Scene& to) {
+  const bool asked = std::any_of(to.cloths.begin(), to.cloths.end(), [](const scene::Cloth& cloth) {
+    return std::holds_alternative<scene::Dress>(cloth.start);
+  });
+  return asked && (from.colliders != to.colliders || from.self_collision != to.self_collision);
+}
+
 }  // namespace
 
 const char* name(ChangeDepth depth) {
@@ -81,7 +90,8 @@ const char* name(ChangeDepth depth) {
 
 ChangeDepth change_depth(const scene::Scene& from, const scene::Scene& to) {
   if (without_looks(from) == without_looks(to)) return ChangeDepth::none;
-  if (from.cloths.size() != to.cloths.size() || bodies_came(from, to)) return ChangeDepth::cloth;
+  if (from.cloths.size() != to.cloths.size() || bodies_came(from, to) || led_out_otherwise(from, to))
+    return ChangeDepth::cloth;
   bool same = plan(from) == plan(to);
   for (std::size_t i = 0; i < from.cloths.size(); ++i) {
     if (new_cloth(from.cloths[i], to.cloths[i])) return ChangeDepth::cloth;

@@ -14,7 +14,10 @@ void KeptStates::keep(const std::function<void(KeptState&)>& copy) {
     drop_oldest();
   };
   const std::size_t expected = states_.empty() ? 0 : states_.back().bytes();
-  while (!aside_.empty() && lacks_place(expected)) aside_.pop_front();
+  while (!aside_.empty() && lacks_place(expected)) {
+    aside_.pop_front();
+    lost_aside_ = aside_.empty();
+  }
   while (!states_.empty() && lacks_place(expected)) take_the_oldest();
   try {
     copy(next);
@@ -46,6 +49,7 @@ bool KeptStates::lacks_place(std::size_t expected) const {
 
 void KeptStates::exchange_aside(std::uint64_t step) {
   std::deque<KeptState> others = std::exchange(aside_, {});
+  lost_aside_ = false;
   const auto first = std::find_if(states_.begin(), states_.end(),
                                   [step](const KeptState& state) { return state.step > step; });
   aside_.assign(std::make_move_iterator(first), std::make_move_iterator(states_.end()));

@@ -51,18 +51,24 @@ class KeptStates {
   void drop_after(std::uint64_t step);
   void clear() {
     states_.clear();
-    aside_.clear();
+    drop_aside();
   }
 
   /// Exchanges the states after `step` for those that are set aside.
   void exchange_aside(std::uint64_t step);
-  void drop_aside() { aside_.clear(); }
+  void drop_aside() {
+    aside_.clear();
+    lost_aside_ = false;
+  }
+  /// True if those set aside had to make room, all of them: the run that was left is a long way back.
+  bool lost_aside() const { return lost_aside_; }
 
  private:
   bool lacks_place(std::size_t expected) const;
 
   std::deque<KeptState> states_;  ///< the oldest first
   std::deque<KeptState> aside_;   ///< likewise
+  bool lost_aside_ = false;
 };
 
 }  // namespace clothlab::sim

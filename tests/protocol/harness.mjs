@@ -53,7 +53,7 @@ if (process.env.NODE_TEST_CONTEXT) after(() => children.forEach((child) => child
 export class Server {
   /// `clothlab serve`. A session that a test has left soon stops: it would take time from the tests that follow.
   static start(...args) {
-    const unwatched = args.includes("--unwatched-timeout") ? [] : ["--unwatched-timeout", "2"];
+    const unwatched = args.some((given) => given.startsWith("--unwatched-timeout")) ? [] : ["--unwatched-timeout", "2"];
     return Server.launch("serve", ...unwatched, ...args);
   }
 

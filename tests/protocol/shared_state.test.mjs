@@ -130,7 +130,7 @@ test("a server whose sessions are all watched says so, and opens another once on
 
 test("a session without clients is given up after --unwatched-timeout, so that another server can open it", async () => {
   const kept = folder();
-  const [a, b] = [await start(kept, "--unwatched-timeout", "1"), await start(kept)];
+  const [a, b] = [await start(kept, "--unwatched-timeout", "1"), await start(kept, "--unwatched-timeout", "30")];
   const client = await watch(a, "s");
   await client.frame((frame) => frame.time > 0.5);
   await client.close();

@@ -125,16 +125,34 @@ TEST_CASE("an open body is left to the side on which most of the cloth is") {
 
 TEST_CASE("a solid is left, too, and pinned vertices stay") {
   scene::Cloth cloth = garment(tube(0.21), 0.5);
-  cloth.transform.translate = {0.0, 0.0, 0.03};
+  cloth.transform.translate = {0.0, 0.0, 0.05};
   cloth.pins = {scene::Pin{scene::AtVertex{0}, scene::Motion{}, true}};
   const scene::Collider ball{"ball", scene::Sphere{dvec3(0.0), 0.2}, 0.3, 0.0, {}};
   scene::Scene scene = dressed(cloth, {ball});
-  scene.cloths[0].transform.translate.z = 0.05;
   const Result<model::Model> model = model::build(scene);
   REQUIRE(model);
   CHECK(model->start_position[0] == model->rest_position[0]);
   for (std::size_t i = 1; i < model->start_position.size(); ++i)
     CHECK(glm::length(model->start_position[i]) > 0.2);
+  std::get<scene::Dress>(scene.cloths[0].start).seconds = 0.002;  // a step
+  const Result<model::Model> early = model::build(scene);
+  REQUIRE(early);
+  CHECK_THAT(model::dressed_note(*early), Catch::Contains("still in a solid"));
+}
+
+TEST_CASE("cloth deep in a body is led out, however large the thickness is") {
+  scene::Cloth cloth = garment({}, 1.0);
+  cloth.mesh = scene::Grid{5, 5, 0.1, 0.1};
+  cloth.transform.translate = {0.0, 0.7, 0.0};  // 0.3 m below the surface, twelve edges
+  scene::Scene scene = dressed(cloth, {body_of(ball_mesh(3))});
+  REQUIRE_FALSE(model::build(as_it_is(scene)));
+  for (const double thick : {thickness, 10.0}) {
+    INFO(thick << " m");
+    scene.self_collision->thickness = thick;
+    const Result<model::Model> model = model::build(scene);
+    REQUIRE(model);
+    for (const dvec3& x : model->start_position) CHECK(glm::length(x) > 0.98);  // the ball's triangles
+  }
 }
 
 TEST_CASE("cloth through cloth goes back to the side from which it came") {

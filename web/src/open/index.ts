@@ -237,7 +237,7 @@ function tellAside(answers: Answers, stored: SceneDocument, aside: Aside, refusa
     closed: () => host.hideCrossings(),
     actions: [
       ...(crossings ? [{ label: "Show me", keeps: true, run: () => host.showCrossings(crossings) }] : []),
-      { label: "Lead it out", run: () => again("Lead out", leadOut()) },
+      ...(crossings ? [{ label: "Lead it out", run: () => again("Lead out", leadOut()) }] : []),
       { label: moved ? "Put it back" : "Try surfaces", run: () => again("Put in place", []) },
     ],
   });

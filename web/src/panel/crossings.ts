@@ -36,6 +36,13 @@ function ledOut(patch: Patch, { pairs }: Crossings, stored: SceneDocument | null
   return { ...patch, cloths: all.map((cloth, i) => (cloths.has(i) ? { ...cloth, start } : cloth)) };
 }
 
+/// True if this patch, or the scene as it is, leads out all that cross: to ask for it again would change nothing.
+function triedIn(patch: Patch, { pairs }: Crossings, stored: SceneDocument | null): boolean {
+  if (JSON.stringify(patch).includes(JSON.stringify(start))) return true;
+  const cloths = pairs.flatMap(({ edge, triangle }) => [edge.cloth, triangle.cloth]);
+  return cloths.every((cloth) => cloth === undefined || "dress" in (stored?.cloths[cloth]?.start ?? {}));
+}
+
 const named = ({ vertices, name }: CrossingPart): string => `${vertices.join("-")} of ${name}`;
 
 /// What passes through what, and the first `most` edges and triangles; none if the refusal has another reason.
@@ -65,7 +72,7 @@ export function tellCrossings(title: string, error: RpcError, patch: Patch, host
     closed: () => host.hide(),
     actions: [
       { label: "Show me", keeps: true, run: () => host.show(crossings) },
-      ...(crossings.when === "start"
+      ...(crossings.when === "start" && !triedIn(patch, crossings, host.stored())
         ? [{ label: "Lead it out", run: () => host.send(ledOut(patch, crossings, host.stored())) }]
         : []),
       ...(path === ofCloth ? [{ label: "Use points instead", run: () => host.send(underPoints(patch)) }] : []),

@@ -67,7 +67,7 @@ export class OwnCopy {
   }
 
   private offer({ scene }: Copy): void {
-    if (!this.host.mayEdit()) return;
+    if (this.offered || !this.host.mayEdit()) return;
     const restore = (): void => {
       this.host.load(scene).then(
         () => (this.playing ? this.host.transport.start() : this.host.transport.stop()),

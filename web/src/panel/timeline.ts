@@ -30,6 +30,7 @@ export class Timeline {
   private readonly from = document.createElement("button");
   private frames: KeptFrame[] = []; // while one looks back: those that were there when it began
   private timer = 0;
+  private closeUndo = (): void => undefined; // the server undoes the last going back alone
 
   constructor(private readonly host: TimelineHost) {
     this.card.id = "timeline";
@@ -163,7 +164,8 @@ export class Timeline {
     try {
       await this.host.resume({ step });
       this.goLive();
-      notice("info", {
+      this.closeUndo();
+      this.closeUndo = notice("info", {
         title: `Back at ${time.toFixed(3)} s`,
         lines: ["Paused there. Play goes on from it."],
         actions: [{ label: `Undo: to ${until.toFixed(3)} s`, run: () => this.undo(left, playing) }],
