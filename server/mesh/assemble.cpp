@@ -1,7 +1,7 @@
 // From the polygons of a file to a mesh that can be simulated.
 #include <algorithm>
-#include <numeric>
 
+#include "server/base/disjoint_sets.h"
 #include "server/mesh/open_places.h"
 #include "server/mesh/raw.h"
 #include "server/mesh/sides.h"
@@ -234,15 +234,12 @@ class Assembly {
   }
 
   void count_parts() {
-    std::vector<Index> root(mesh_.vertices.size());
-    std::iota(root.begin(), root.end(), 0u);
-    const auto find = [&](Index i) {
-      while (root[i] != i) i = root[i] = root[root[i]];
-      return i;
-    };
-    for (const auto& triangle : mesh_.triangles)
-      for (const Index corner : {triangle[1], triangle[2]}) root[find(corner)] = find(triangle[0]);
-    for (Index i = 0; i < root.size(); ++i) mesh_.parts += find(i) == i;
+    DisjointSets joined(mesh_.vertices.size());
+    for (const auto& [a, b, c] : mesh_.triangles) {
+      joined.join(a, b);
+      joined.join(a, c);
+    }
+    for (Index i = 0; i < mesh_.vertices.size(); ++i) mesh_.parts += joined.find(i) == i;
   }
 
   const Raw& raw_;

@@ -4,9 +4,9 @@
 #include <array>
 #include <glm/common.hpp>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
+#include "server/base/disjoint_sets.h"
 #include "server/model/motion.h"
 #include "server/model/orientation.h"
 #include "server/scene/placement.h"
@@ -30,20 +30,16 @@ struct Side {
 std::vector<BodyPart> parts_of(const Model& model, std::uint32_t number) {
   const BodyRange& body = model.bodies[number];
   const Corners* first = model.body_triangles.data() + body.first_triangle;
-  std::vector<Index> root(body.vertex_count);
-  std::iota(root.begin(), root.end(), 0u);
-  const auto part = [&](Index vertex) {
-    Index i = vertex - model.vertex_count() - body.first_vertex;
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
+  DisjointSets joined(body.vertex_count);
+  const auto number_in_body = [&](Index vertex) { return vertex - model.vertex_count() - body.first_vertex; };
+  const auto part = [&](Index vertex) { return joined.find(number_in_body(vertex)); };
   std::vector<Side> sides;
   sides.reserve(3 * std::size_t{body.triangle_count});
   for (Index t = 0; t < body.triangle_count; ++t)
     for (std::size_t corner = 0; corner < 3; ++corner) {
       const Index a = first[t][corner], b = first[t][(corner + 1) % 3];
       sides.push_back({std::min(a, b), std::max(a, b), a < b ? 1 : -1});
-      root[part(a)] = part(b);
+      joined.join(number_in_body(a), number_in_body(b));
     }
   std::sort(sides.begin(), sides.end());
   std::vector<bool> open(body.vertex_count, false);  // by the part's root

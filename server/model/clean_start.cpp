@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
-#include <numeric>
 
+#include "server/base/disjoint_sets.h"
 #include "server/base/text.h"
 #include "server/model/bodies.h"
 
@@ -163,20 +163,14 @@ Status check_bodies(const Model& model, const scene::Scene& scene, const std::ve
 
 /// One vertex of each piece of cloth that hangs together.
 std::vector<std::uint32_t> one_of_each_piece(const Model& model) {
-  std::vector<std::uint32_t> root(model.vertex_count());
-  std::iota(root.begin(), root.end(), 0u);
-  const auto find = [&](std::uint32_t i) {
-    while (root[i] != i) i = root[i] = root[root[i]];
-    return i;
-  };
-  for (const auto& [a, b, c] : model.triangles)
-    for (const std::uint32_t other : {b, c}) {
-      const std::uint32_t one = find(a), two = find(other);
-      root[std::max(one, two)] = std::min(one, two);
-    }
+  DisjointSets pieces(model.vertex_count());
+  for (const auto& [a, b, c] : model.triangles) {
+    pieces.join(a, b);
+    pieces.join(a, c);
+  }
   std::vector<std::uint32_t> first;
-  for (std::uint32_t i = 0; i < root.size(); ++i)
-    if (find(i) == i) first.push_back(i);
+  for (std::uint32_t i = 0; i < model.vertex_count(); ++i)
+    if (pieces.find(i) == i) first.push_back(i);
   return first;
 }
 

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <mutex>
 #include <optional>
 #include <set>
 
-#include "server/base/hash.h"
 #include "server/base/pieces.h"
 #include "server/base/text.h"
 #include "server/model/bodies.h"
 #include "server/model/crossings.h"
+#include "server/model/dress_memory.h"
 #include "server/model/skin.h"
 #include "server/model/untangle.h"
 
@@ -128,73 +126,10 @@ class Dressing {
   Surfaces surfaces_;
 };
 
-struct Found {
-  std::string key;
-  Dressed dressed;
-  std::vector<dvec3> places;
-};
-
-/// What was found last, as a scene is built several times: to be checked, to be run, for each change of a
-/// number.
-class Memory {
- public:
-  std::optional<Found> find(const std::string& key) {
-    const std::lock_guard lock(mutex_);
-    const auto at = std::find_if(found_.begin(), found_.end(), [&](const Found& f) { return f.key == key; });
-    return at == found_.end() ? std::nullopt : std::optional(*at);
-  }
-  void keep(Found found) {
-    const std::lock_guard lock(mutex_);
-    vertices_ += found.places.size();
-    found_.push_back(std::move(found));
-    while (found_.size() > 1 && (found_.size() > most_kept || vertices_ > most_vertices)) {
-      vertices_ -= found_.front().places.size();
-      found_.pop_front();
-    }
-  }
-
- private:
-  static constexpr std::size_t most_kept = 8, most_vertices = 1u << 20;
-  std::mutex mutex_;
-  std::deque<Found> found_;
-  std::size_t vertices_ = 0;
-};
-
-template <class Value>
-void add(Hash& hash, const std::vector<Value>& values) {
-  hash.add({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value)});
-}
-
-/// Of all that the places depend on.
-std::string key_of(const Model& model, const scene::Scene& scene, const std::vector<std::uint8_t>& led_out,
-                   std::size_t steps) {
-  Hash hash;
-  add(hash, model.start_position);
-  add(hash, model.triangles);
-  add(hash, model.pin_motion);
-  add(hash, model.vertex_cloth);
-  add(hash, led_out);
-  add(hash, body_positions(model, 0.0));
-  add(hash, model.body_triangles);
-  std::vector<double> numbers{static_cast<double>(steps)};
-  if (scene.collides(scene::ContactKind::surface)) numbers.push_back(scene.self_collision->thickness);
-  for (const scene::Collider& collider : scene.colliders) {
-    if (collider.is_body()) continue;
-    const auto [kind, solid] = solid_at_start(collider, 0.0);
-    for (const dvec3& x :
-         {solid.point, solid.direction, solid.second, solid.extent, dvec3(kind, solid.radius, 0.0)})
-      numbers.insert(numbers.end(), {x.x, x.y, x.z});
-  }
-  add(hash, numbers);
-  for (const Spring& spring : model.springs())
-    hash.add(std::to_string(spring.vertices[0]) + "-" + std::to_string(spring.vertices[1]));
-  return hash.text();
-}
-
 }  // namespace
 
 void dress(Model& model, const scene::Scene& scene) {
-  static Memory memory;
+  static DressMemory memory;
   std::vector<std::uint8_t> led_out;
   double seconds = 0.0;
   for (const scene::Cloth& cloth : scene.cloths) {
@@ -204,12 +139,12 @@ void dress(Model& model, const scene::Scene& scene) {
   }
   if (seconds == 0.0) return;
   const auto steps = static_cast<std::size_t>(std::ceil(seconds * dress_steps_per_second));
-  const std::string key = key_of(model, scene, led_out, steps);
-  std::optional<Found> found = memory.find(key);
+  const std::string key = dress_key(model, scene, led_out, steps);
+  std::optional<DressMemory::Found> found = memory.find(key);
   if (!found) {
     Dressing dressing(model, scene, led_out);
     const Dressed dressed = dressing.run(steps);
-    found = Found{key, dressed, dressing.places()};
+    found = DressMemory::Found{key, dressed, dressing.places()};
     memory.keep(*found);
   }
   model.dressed = found->dressed;

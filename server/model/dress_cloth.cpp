@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
-#include <numeric>
 
+#include "server/base/disjoint_sets.h"
 #include "server/base/pieces.h"
+#include "server/model/triangle_geometry.h"
 
 namespace clothlab::model {
 
@@ -60,10 +61,7 @@ void DressCloth::list_lengths(const Model& model) {
     lengths_.push_back({a, b, length, 1.0});
     if (first_at_edge_[e + 1] - first_at_edge_[e] != 2) continue;
     std::array<Index, 2> far{};
-    for (std::size_t k = 0; k < 2; ++k) {
-      const Triangle& t = triangles[at_edge_[first_at_edge_[e] + k]];
-      far[k] = *std::find_if(t.begin(), t.end(), [&](Index corner) { return corner != a && corner != b; });
-    }
+    for (std::size_t k = 0; k < 2; ++k) far[k] = opposite(triangles[at_edge_[first_at_edge_[e] + k]], a, b);
     lengths_.push_back({far[0], far[1], glm::distance(x[far[0]], x[far[1]]), across_stiffness});
   }
   // Seams between pieces, and springs that are no edges of triangles.
@@ -77,17 +75,9 @@ void DressCloth::list_lengths(const Model& model) {
 }
 
 void DressCloth::list_pieces() {
-  piece.resize(x.size());
-  std::iota(piece.begin(), piece.end(), 0u);
-  const auto find = [&](Index i) {
-    while (piece[i] != i) i = piece[i] = piece[piece[i]];
-    return i;
-  };
-  for (const auto& [a, b] : edges) {
-    const Index one = find(a), two = find(b);
-    piece[std::max(one, two)] = std::min(one, two);
-  }
-  for (Index i = 0; i < piece.size(); ++i) piece[i] = find(i);
+  DisjointSets pieces(x.size());
+  for (const auto& [a, b] : edges) pieces.join(a, b);
+  for (Index i = 0; i < x.size(); ++i) piece.push_back(pieces.find(i));
 }
 
 std::span<const Index> DressCloth::triangles_at(const Edge& edge) const {

@@ -7,7 +7,7 @@
 
 #include "server/base/pieces.h"
 #include "server/model/motion.h"
-#include "server/model/nearest_place.h"
+#include "server/model/triangle_geometry.h"
 #include "server/scene/solid.h"
 #include "shaders/elements/elements.h"
 
@@ -22,12 +22,6 @@ using Corners = std::array<Index, 3>;
 constexpr double beside_face = 1e-3;
 constexpr double growth = 0.05;       // of the mean edge: what a crossing that comes again is pushed farther
 constexpr double most_farther = 0.5;  // of the mean edge
-
-dvec3 normal_of(const std::array<dvec3, 3>& corner) {
-  const dvec3 across = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-  const double length = glm::length(across);
-  return length > 0.0 ? across / length : dvec3(0.0);
-}
 
 }  // namespace
 

@@ -4,35 +4,18 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numeric>
 #include <optional>
 
+#include "server/base/disjoint_sets.h"
 #include "server/base/pieces.h"
 #include "server/model/box_tree.h"
-#include "server/model/nearest_place.h"
+#include "server/model/triangle_geometry.h"
 
 namespace clothlab::model {
 
 namespace {
 
 using Index = std::uint32_t;
-
-/// Sets that are joined, each known by its smallest member.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : root_(count) { std::iota(root_.begin(), root_.end(), 0u); }
-  Index find(Index i) {
-    while (root_[i] != i) i = root_[i] = root_[root_[i]];
-    return i;
-  }
-  void join(Index a, Index b) {
-    const Index one = find(a), two = find(b);
-    root_[std::max(one, two)] = std::min(one, two);
-  }
-
- private:
-  std::vector<Index> root_;
-};
 
 /// What edges that cross nothing hold together.
 class Regions {
@@ -57,7 +40,7 @@ class Regions {
   }
 
  private:
-  Sets sets_;
+  DisjointSets sets_;
   std::vector<Index> size_;
   std::vector<bool> border_;
 };
@@ -165,7 +148,7 @@ class Untangling {
         lines.push_back({{std::min(triangle, other), std::max(triangle, other)}, i});
     }
     std::sort(lines.begin(), lines.end());
-    Sets sets(pairs_.size());
+    DisjointSets sets(pairs_.size());
     for (std::size_t i = 1; i < lines.size(); ++i)
       if (lines[i].first == lines[i - 1].first) sets.join(lines[i].second, lines[i - 1].second);
     for (Index i = 0; i < pairs_.size(); ++i) pairs_[i].contour = sets.find(i);
@@ -187,9 +170,7 @@ class Untangling {
   }
 
   dvec3 normal(const DressCloth::Triangle& t) const {
-    const dvec3 across = glm::cross(cloth_.x[t[1]] - cloth_.x[t[0]], cloth_.x[t[2]] - cloth_.x[t[0]]);
-    const double length = glm::length(across);
-    return length > 0.0 ? across / length : dvec3(0.0);
+    return normal_of({cloth_.x[t[0]], cloth_.x[t[1]], cloth_.x[t[2]]});
   }
   dvec3 shares(const Crossing& crossing) const {
     const auto& [a, b, c] = crossing.triangle;
@@ -223,10 +204,7 @@ class Untangling {
       dvec3 line = glm::cross(normal(t), across);
       if (!(glm::length(line) > flattest)) continue;
       line = glm::normalize(line);
-      const Index far = *std::find_if(t.begin(), t.end(), [&](Index corner) {
-        return corner != crossing.edge[0] && corner != crossing.edge[1];
-      });
-      dvec3 inwards = cloth_.x[far] - crossing.place;
+      dvec3 inwards = cloth_.x[opposite(t, crossing.edge[0], crossing.edge[1])] - crossing.place;
       inwards -= along * glm::dot(along, inwards);
       if (glm::dot(line, inwards) < 0.0) line = -line;
       way += line - across * (glm::dot(line, along) / slope);

@@ -3,7 +3,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { load } from "./module.mjs";
 
-const { freeName, freePlace } = await load("link/free_place");
+const { freePlace } = await load("link/free_place");
+const { freeName } = await load("link/names");
 const half = [0.12, 0.12, 0.12];
 const free = { colliders: [] };
 const clear = (place, { low, high }) => place.some((at, k) => at + half[k] <= low[k] || at - half[k] >= high[k]);

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { load } from "./module.mjs";
 
-const { content, freeName, withBuffers } = await load("link/mesh_upload");
+const { content, freeFileName, withBuffers } = await load("link/mesh_upload");
 const { guessRole, guessUnit, guessUp, holds, patternScale, sizeText, thicknessFor, turned, turnOf } =
   await load("open/guess");
 const { beside, falls, patchFor } = await load("open/scene");
@@ -172,9 +172,9 @@ test("what no body and no pin holds falls; what goes through the body stands bes
 });
 
 test("a name that the scene has gets a number, and one that is too long loses its start", () => {
-  assert.equal(freeName("shirt.obj", new Set()), "shirt.obj");
-  assert.equal(freeName("shirt.obj", new Set(["shirt.obj", "shirt-2.obj"])), "shirt-3.obj");
-  const long = freeName(`${"é".repeat(60)}.obj`, new Set());
+  assert.equal(freeFileName("shirt.obj", new Set()), "shirt.obj");
+  assert.equal(freeFileName("shirt.obj", new Set(["shirt.obj", "shirt-2.obj"])), "shirt-3.obj");
+  const long = freeFileName(`${"é".repeat(60)}.obj`, new Set());
   assert.ok(new TextEncoder().encode(long).length <= 64 && long.endsWith("é.obj"));
 });
 

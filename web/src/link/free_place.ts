@@ -46,12 +46,3 @@ export function freePlace(wished: Vec3, half: Vec3, taken: Box[], { colliders }:
   const top = Math.max(...taken.map(({ high }) => high[1]));
   return [wished[0], Number((top + half[1] + 2 * gap).toFixed(3)), wished[2]];
 }
-
-/// A name of this kind that no other has: "sphere", "sphere-2".
-export function freeName(kind: string, others: { name: string }[]): string {
-  const names = new Set(others.map(({ name }) => name));
-  for (let number = 1; ; ++number) {
-    const name = number === 1 ? kind : `${kind}-${number}`;
-    if (!names.has(name)) return name;
-  }
-}

@@ -61,7 +61,7 @@ export function withBuffers(gltf: string, beside: Map<string, Uint8Array>): stri
 
 /// The name of a file in the session: its end, of at most 64 bytes, with a number if the scene has it already. An
 /// upload by a name that the scene has would change the scene unasked.
-export function freeName(file: string, taken: Set<string>): string {
+export function freeFileName(file: string, taken: Set<string>): string {
   const [, stem = "", ending = ""] = /^(.*?)(\.[^.]*)?$/.exec(file) ?? [];
   const bytes = (text: string): number => new TextEncoder().encode(text).length;
   for (let number = 1; ; ++number) {

@@ -3,7 +3,7 @@ import { ask } from "./dialog";
 import type { OpenHost } from "./door";
 import { holds, sizeText, type Unit, units, type Up } from "./guess";
 import { type Answers, type Aside, beside, contact, extent, falls, patchFor, thicknessIn } from "./scene";
-import { content, freeName, largestMessage, type Uploaded, withBuffers } from "../link/mesh_upload";
+import { content, freeFileName, largestMessage, type Uploaded, withBuffers } from "../link/mesh_upload";
 import { RpcError } from "../link/rpc";
 import type { Operation, SceneDocument, Vec3 } from "../link/scene_types";
 import { shiftedPlace } from "../link/shifted_cloth";
@@ -80,7 +80,7 @@ export async function openFiles(files: File[], host: OpenHost): Promise<void> {
   const taken = new Set(named(stored).map(({ file }) => file));
   const sent: Uploaded[] = [];
   for (const file of meshes) {
-    const name = freeName(file.name, taken);
+    const name = freeFileName(file.name, taken);
     taken.add(name);
     const answer = await send(file, name, besides, host);
     if (answer) sent.push(answer);

@@ -1,6 +1,7 @@
 // Cloths, pins and bodies that come and go: what the panel's buttons for that change in the document.
 import type { Section } from "./field";
-import { type Box, freeName, freePlace } from "../link/free_place";
+import { type Box, freePlace } from "../link/free_place";
+import { freeName, freeNumber, numbered } from "../link/names";
 import { shiftedCloth } from "../link/shifted_cloth";
 import type { Cloth, Collider, Operation, Pin, SceneDocument, Vec3 } from "../link/scene_types";
 
@@ -45,13 +46,13 @@ const copied = (index: number, name: string): Deed => ({
   keepStable: true,
   change: ({ cloths }, room) => {
     const cloth = cloths[index] as Cloth;
-    const names = new Set(cloths.map((each) => each.name));
-    let number = 2;
-    while (names.has(`${cloth.name}-${number}`)) ++number;
+    const number = freeNumber(cloth.name, cloths);
     const { mesh, transform } = cloth;
     const atRest = "grid" in mesh ? mesh.grid.width * transform.scale : 0;
     const by: Vec3 = [Number(((number - 1) * gap * Math.max(room.wide(index), atRest)).toFixed(4)), 0, 0];
-    return [{ op: "add", path: `/cloths/${cloths.length}`, value: shiftedCloth(cloth, `${cloth.name}-${number}`, by) }];
+    return [
+      { op: "add", path: `/cloths/${cloths.length}`, value: shiftedCloth(cloth, numbered(cloth.name, number), by) },
+    ];
   },
 });
 

@@ -1,6 +1,7 @@
-// The place of a triangle that is nearest to a point.
+// A triangle's normal, the corner opposite to an edge, and the place that is nearest to a point.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <glm/geometric.hpp>
 
@@ -9,6 +10,20 @@
 namespace clothlab::model {
 
 inline constexpr double no_distance = 1e-12;  ///< less has no direction [m]
+
+/// Unit normal; 0 for a triangle without area.
+inline dvec3 normal_of(const std::array<dvec3, 3>& corner) {
+  const dvec3 across = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+  const double length = glm::length(across);
+  return length > 0.0 ? across / length : dvec3(0.0);
+}
+
+/// The corner of a triangle that is on neither end of its edge from `a` to `b`.
+template <class Index>
+Index opposite(const std::array<Index, 3>& triangle, Index a, Index b) {
+  return *std::find_if(triangle.begin(), triangle.end(),
+                       [&](Index corner) { return corner != a && corner != b; });
+}
 
 struct PlaceOnTriangle {
   dvec3 place;   ///< [m]
