@@ -77,7 +77,10 @@ inline lab::Choice made_up_choice() {
   choice.renderer = chart.renderer;
   choice.tolerance = 1e-2;
   choice.time = 1;
+  choice.asked = 0.5;
   choice.horizon = 0.42;
+  choice.horizon_reason =
+      "Judged up to 0.42 s of the 0.5 s asked for. A copy is 100 times as far away soon after.";
   choice.reference_error = 2e-9;
   choice.met = true;
   choice.tried = chart.points;

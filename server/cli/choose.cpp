@@ -38,6 +38,7 @@ std::vector<std::string> row(const char* what, const lab::Point& point) {
 void print_choice(const lab::Outcome& outcome) {
   const lab::Choice& choice = std::get<lab::Choice>(outcome);
   print_heading(choice.scene, choice.time, choice.renderer, choice.complete);
+  if (choice.horizon < choice.asked) std::cout << choice.horizon_reason << "\n";
   std::cout << "wanted: an error of at most " << brief(choice.tolerance) << " up to " << brief(choice.horizon)
             << " s (RMS over the cloth's size; the reference's own: " << brief(choice.reference_error, 2)
             << ")\n";

@@ -140,7 +140,9 @@ json of(const StabilityMap& map) {
 json of(const Choice& choice) {
   json result = heading("choose", choice);
   result.update({{"tolerance", number(choice.tolerance)},
+                 {"asked_s", number(choice.asked)},
                  {"horizon_s", number(choice.horizon)},
+                 {"horizon_reason", choice.horizon_reason},
                  {"reference_error", number(choice.reference_error)},
                  {"met", choice.met},
                  {"chosen", of(choice.chosen)},

@@ -133,6 +133,9 @@ struct Placed {
 };
 /// How a pin or a collider moves; monostate: it does not (`null` in the document). Only pins are `Placed`.
 using Motion = std::variant<std::monostate, Oscillate, Linear, Spin, Placed>;
+inline bool has_motion(const Motion& motion) {
+  return !std::holds_alternative<std::monostate>(motion);
+}
 
 /// A vertex of a grid by its column and row, counted from 0. Despite the name it can be any vertex.
 struct AtCorner {

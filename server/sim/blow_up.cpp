@@ -22,13 +22,10 @@ constexpr double growth_that_proves = 4.0, proved_already = 1.0;
 constexpr int patience = 60;           // judgements after which a doubt is reviewed: about a second
 constexpr double share_of_good = 0.1;  // a state is good up to this share of the excess that is allowed
 
-double total(const Diagnostics& state) {
-  return state.kinetic + state.elastic + state.gravitational;
-}
 /// True if the state, its energies and its forces are finite. Forces overflow before energies do, and the
 /// work of an infinite force would excuse any growth.
 bool finite(const Diagnostics& state) {
-  return state.finite && std::isfinite(total(state)) && std::isfinite(state.pin_force) &&
+  return state.finite && std::isfinite(state.total_energy()) && std::isfinite(state.pin_force) &&
          std::isfinite(state.contact_force);
 }
 
@@ -136,7 +133,7 @@ void BlowUp::start(const Allowance& allowance, const Diagnostics& diagnosis) {
   *this = BlowUp();
   allowance_ = allowance;
   const Diagnostics state = seen(diagnosis);
-  ledger_ = total(state);
+  ledger_ = state.total_energy();
   last_ = state;
   last_good_ = diagnosis;
 }
@@ -144,7 +141,7 @@ void BlowUp::start(const Allowance& allowance, const Diagnostics& diagnosis) {
 void BlowUp::rebase(const Diagnostics& diagnosis) {
   const Diagnostics state = seen(diagnosis);
   const double before = growing_energy(last_);
-  ledger_ += total(state) - total(last_);
+  ledger_ += state.total_energy() - last_.total_energy();
   if (before > 0.0) doubted_energy_ *= growing_energy(state) / before;
   last_ = state;
 }
@@ -177,7 +174,7 @@ BlowUp::Verdict BlowUp::judge(const Diagnostics& diagnosis) {
   const double allowed_excess = (allowance_.energy_ratio - 1.0) * available + allowance_.slack_energy;
   allowed_ = available + allowed_excess;
   const double excess = growing_energy(state) - available;
-  ledger_ = std::min(ledger_, total(state));
+  ledger_ = std::min(ledger_, state.total_energy());
   last_ = state;
   if (excess > allowed_excess) return judge_doubtful(state);
   doubted_energy_ = 0.0;

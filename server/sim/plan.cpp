@@ -11,16 +11,12 @@ namespace clothlab::sim {
 
 namespace {
 
-bool moves(const scene::Motion& motion) {
-  return !std::holds_alternative<std::monostate>(motion);
-}
-
 std::vector<SolidRun> solid_runs(const scene::Scene& scene) {
   std::vector<SolidRun> runs;
   for (std::size_t kind = 0; kind < scene::solid_kinds; ++kind)
     for (const scene::Collider& collider : scene.colliders) {
       if (collider.shape.index() != kind) continue;
-      const SolidRun next{kind, moves(collider.motion)};
+      const SolidRun next{kind, scene::has_motion(collider.motion)};
       if (runs.empty() || runs.back().kind != kind || runs.back().moves != next.moves) runs.push_back(next);
       ++runs.back().count;
     }
@@ -55,8 +51,9 @@ bool margins_differ(const scene::Scene& scene) {
   if (scene.cloths.size() < 2) return false;
   const auto differs = [&](const scene::Collider& collider) {
     if (collider.is_body()) return false;
-    return !scene.self_collision || (scene.collides(scene::ContactKind::surface) && moves(collider.motion) &&
-                                     std::holds_alternative<scene::Box>(collider.shape));
+    return !scene.self_collision ||
+           (scene.collides(scene::ContactKind::surface) && scene::has_motion(collider.motion) &&
+            std::holds_alternative<scene::Box>(collider.shape));
   };
   return std::any_of(scene.colliders.begin(), scene.colliders.end(), differs);
 }
@@ -66,7 +63,7 @@ bool margins_differ(const scene::Scene& scene) {
 std::vector<scene::Motion> moving_motions(const scene::Scene& scene) {
   std::vector<scene::Motion> found;
   const auto add = [&](const scene::Motion& motion) {
-    if (moves(motion) && std::find(found.begin(), found.end(), motion) == found.end())
+    if (scene::has_motion(motion) && std::find(found.begin(), found.end(), motion) == found.end())
       found.push_back(motion);
   };
   for (const scene::Cloth& cloth : scene.cloths)

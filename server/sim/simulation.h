@@ -32,9 +32,10 @@ ChangeDepth change_depth(const scene::Scene& from, const scene::Scene& to);
 struct Diagnostics {
   double time = 0;  ///< [s]
   std::uint64_t step = 0;
-  double kinetic = 0;          ///< [J]
-  double elastic = 0;          ///< [J]
-  double gravitational = 0;    ///< [J], 0 at the origin
+  double kinetic = 0;                                                        ///< [J]
+  double elastic = 0;                                                        ///< [J]
+  double gravitational = 0;                                                  ///< [J], 0 at the origin
+  double total_energy() const { return kinetic + elastic + gravitational; }  ///< [J]
   double max_strain = 0;       ///< largest |l/L - 1| over the springs
   double max_speed = 0;        ///< [m/s]
   std::uint32_t contacts = 0;  ///< vertices touching a collider or another vertex

@@ -11,20 +11,13 @@
 
 namespace clothlab::stream {
 
-namespace {
-
 using nlohmann::json;
-
-bool moves(const scene::Motion& motion) {
-  return !std::holds_alternative<std::monostate>(motion);
-}
-
-}  // namespace
 
 json moving_colliders(const sim::Simulation& simulation) {
   const std::vector<scene::Collider>& home = simulation.scene().colliders;
   // In most scenes no collider moves: this function then allocates nothing.
-  if (std::none_of(home.begin(), home.end(), [](const scene::Collider& each) { return moves(each.motion); }))
+  if (std::none_of(home.begin(), home.end(),
+                   [](const scene::Collider& each) { return scene::has_motion(each.motion); }))
     return nullptr;
   return moving_colliders(simulation.colliders_now());
 }
@@ -32,7 +25,7 @@ json moving_colliders(const sim::Simulation& simulation) {
 json moving_colliders(const std::vector<scene::Collider>& now) {
   json moving = json::array();
   for (std::size_t i = 0; i < now.size(); ++i) {
-    if (!moves(now[i].motion)) continue;
+    if (!scene::has_motion(now[i].motion)) continue;
     json of = scene::shape_to_json(now[i].shape);
     of["index"] = i;
     moving.push_back(std::move(of));

@@ -2,9 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/base/text.h"
 #include "server/lab/measure/choice.h"
 #include "server/lab/measure/trial.h"
 #include "server/lab/measure/truth.h"
+#include "server/lab/measure/whole_time.h"
 #include "server/reference/follower.h"
 #include "server/reference/trajectory.h"
 #include "server/scene/method.h"
@@ -95,6 +97,64 @@ TEST_CASE("a horizon ends where a cloth buckles, and a tangle has none: the lab 
   CHECK(lost.position.empty());
   CHECK(lost.energy.size() == samples_to_horizon);
   CHECK(lost.horizon_reason.find("chaotic at once") != std::string::npos);
+}
+
+TEST_CASE("the reference ends where surfaces touch, of which it knows no contact, and says what touches") {
+  constexpr double height = 0.1, thickness = 0.004, asked = 0.3;
+  const auto above_a_plate = [&](double of) {
+    return test::document_of(
+               formatted(
+                   R"({"version":1,"cloths":[{"mesh":{"grid":{"columns":3,"rows":3,"width":0.2,"height":0.2}},
+            "transform":{"translate":[0,%g,-0.1]},"mass":{"per_vertex":0.001},
+            "material":{"structural":10,"shear":5,"bend":1}}],
+            "colliders":[{"mesh":{"vertices":[[-1,0,-1],[1,0,-1],[1,0,1],[-1,0,1]],
+                                  "triangles":[[0,2,1],[0,3,2]]}}],
+            "self_collision":{"kind":"surface","thickness":%g}})",
+                   of, thickness))
+        .scene;
+  };
+  const Truth falling = truth_of(above_a_plate(height), {asked, 1e-5, 30.0});
+  const double touches = std::sqrt(2.0 * (height - thickness) / 9.8);
+  INFO(falling.horizon_reason);
+  CHECK(falling.time < touches);
+  CHECK(falling.time > touches - 2.0 * asked / 128);  // the last look of 128 before, and the one before that
+  CHECK(falling.horizon == falling.time);
+  CHECK(falling.horizon_reason.find("of the 0.3 s asked for") != std::string::npos);
+  CHECK(falling.horizon_reason.find("/colliders/0") != std::string::npos);
+
+  const Truth resting = truth_of(above_a_plate(0.8 * thickness), {asked, 1e-5, 30.0});
+  CHECK(resting.why_no_reference.find("no contact between surfaces") != std::string::npos);
+}
+
+TEST_CASE("beyond a horizon a setting has to keep what is known without a reference") {
+  const auto context = test::context();
+  scene::Scene cotton =
+      test::document_of(
+          R"({"version":1,"cloths":[{"mesh":{"grid":{"columns":13,"rows":13}},"material":{"fabric":"cotton"},
+          "pins":[{"at":"corner:0,0"},{"at":"corner:12,0"}]}]})")
+          .scene;
+  Truth known;
+  Result<reference::World> world = reference::make_world(cotton, {0.0});
+  REQUIRE(world);
+  known.world = std::move(*world);
+  known.size = 1.0;
+  known.asked = 0.5;
+  TrialRunner trials;
+  WholeTime whole(cotton, known, 0.03, trials, {});
+  const auto has = [&](const Setting& setting, const std::string& words) {
+    const Result<std::string> found = whole.fault(setting);
+    REQUIRE(found);
+    INFO(text(setting) << ": " << *found);
+    CHECK((words.empty() ? found->empty() : found->find(words) != std::string::npos));
+  };
+  has({Method::bdf2, 1.0 / 120, 10, 1e-5}, "");
+  has({Method::implicit_euler, 1.0 / 30, 1, 1e-4}, "far from solved");
+  has({Method::bdf2, 1.0 / 15, 1, 1e-4}, "half of its step");
+  has({Method::vbd, 1.0 / 60, 10, 1e-4}, "its energy rises");
+  has({Method::verlet, 1e-3, 1, 1e-4}, "blows up");
+  // Where wind does work, energy tells nothing, but stretch does.
+  cotton.wind = scene::Wind{};
+  has({Method::vbd, 1.0 / 60, 4, 1e-4}, "stretches the cloth");
 }
 
 TEST_CASE("woven cloth has a reference, which RK4 confirms within its estimate") {

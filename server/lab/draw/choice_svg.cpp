@@ -9,6 +9,7 @@ std::string draw(const Choice& choice, Axis axis) {
   plot.heading.push_back(brief(choice.time) + " s simulated" +
                          (choice.renderer.empty() ? "" : " on " + choice.renderer) +
                          (choice.complete ? "" : "; not complete"));
+  if (choice.horizon < choice.asked) plot.heading.push_back(choice.horizon_reason);
   if (choice.complete && !choice.why.empty()) plot.heading.push_back(choice.why);
   plot.points = &choice.tried;
   plot.empty = "Nothing is measured yet.";

@@ -12,6 +12,7 @@
 #include "server/lab/measure/step_search.h"
 #include "server/lab/measure/trial.h"
 #include "server/lab/measure/truth.h"
+#include "server/lab/measure/whole_time.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
 
@@ -29,6 +30,8 @@ constexpr int looks_again = 3;  // looks at a candidate at most, see bound_error
 /// cloth that its weight stretches may be some times as stiff as about the shape of rest.
 constexpr double shorter_for_margin = 0.8;
 constexpr int most_margins = 8;
+/// A candidate with which something is wrong beyond the horizon tries half of its step, this often at most.
+constexpr int most_halvings = 2;
 constexpr double longest_choice_timing = 0.2;  // wall time of one timing at most [s]
 constexpr double progress_after_truth = 0.3, progress_after_search = 0.9;  // of the progress, at their ends
 
@@ -44,6 +47,8 @@ class Chooser {
     if (Status computed = compute_truth(); !computed) return computed.error();
     search_.emplace(scene_, truth_, request_.tolerance, trials_, control_.stop);
     if (Status listed = search_->list(request_.methods); !listed) return listed.error();
+    if (truth_.horizon < truth_.asked)
+      whole_time_.emplace(scene_, truth_, request_.tolerance, trials_, control_.stop);
     choice_.notes.insert(choice_.notes.end(), search_->notes().begin(), search_->notes().end());
     if (Status measured = measure_present(); !measured) return measured.error();
     std::vector<Candidate>& candidates = search_->candidates();
@@ -53,6 +58,7 @@ class Chooser {
                                       static_cast<double>(candidates.size()),
            1.0, text(candidates[i].setting)});
       if (Status searched = search_->search(candidates[i]); !searched) return searched.error();
+      if (Status kept = keep_whole_time(candidates[i]); !kept) return kept.error();
       choice_.tried = search_->tried();
       control_.arrived(choice_);
     }
@@ -74,7 +80,9 @@ class Chooser {
     if (!found) return found.error();
     truth_ = std::move(*found);
     choice_.time = truth_.time;
+    choice_.asked = truth_.asked;
     choice_.horizon = truth_.horizon;
+    choice_.horizon_reason = truth_.horizon_reason;
     choice_.reference_error = truth_.position_error / truth_.size;
     choice_.notes = truth_.notes;
     if (!truth_.why_no_reference.empty())
@@ -91,6 +99,27 @@ class Chooser {
                        with_significant_digits(request_.tolerance, 3) + " was asked for",
                    "a tolerance of " + with_significant_digits(choice_.reference_error / 0.3, 3) +
                        " or more, or a shorter time"};
+    return ok();
+  }
+
+  /// Where the reference ends early, a candidate with which something is wrong later gets a shorter step, or
+  /// leaves the race.
+  Status keep_whole_time(Candidate& candidate) {
+    if (!whole_time_) return ok();
+    for (int halving = 0; candidate.best; ++halving) {
+      const Setting setting = candidate.best->setting;
+      const Result<std::string> fault = whole_time_->fault(setting);
+      if (!fault) return fault.error();
+      if (fault->empty()) return ok();
+      candidate.best.reset();
+      if (halving == 0 || halving == most_halvings)
+        choice_.notes.push_back(text(setting) + " keeps the tolerance up to " +
+                                with_significant_digits(truth_.horizon, 3) + " s, but " + *fault + ".");
+      if (halving == most_halvings || !search_->may_compete(candidate, 0.5 * setting.dt)) return ok();
+      const Result<double> error = search_->step_at(candidate, 0.5 * setting.dt);
+      if (!error) return error.error();
+      if (*error > request_.tolerance) candidate.best.reset();
+    }
     return ok();
   }
 
@@ -233,6 +262,15 @@ class Chooser {
       set_error(present, errors->front());
     }
     if (present.error_high.value_or(worst) > request_.tolerance) return false;
+    if (whole_time_) {
+      const Result<std::string> fault = whole_time_->fault(present.setting);
+      if (!fault) return fault.error();
+      if (!fault->empty()) {
+        choice_.notes.push_back("The scene's own setting keeps the tolerance up to " +
+                                with_significant_digits(truth_.horizon, 3) + " s, but " + *fault + ".");
+        return false;
+      }
+    }
     return keeps_margin(present);
   }
 
@@ -275,8 +313,8 @@ class Chooser {
     if (second && std::find(race.begin(), race.end(), second) == race.end()) race.push_back(second);
   }
 
-  /// True if the setting does not blow up within the whole time, neither at its own step nor, if its method
-  /// has a step limit, at a step a ninth longer.
+  /// True if the setting does not blow up within the time that was asked for, neither at its own step nor, if
+  /// its method has a step limit, at a step a ninth longer.
   Result<bool> keeps_margin(const Point& point) {
     scene::Scene scene = with(scene_, point.setting);
     std::vector<double> steps{scene.solver.dt};
@@ -284,7 +322,7 @@ class Chooser {
       steps.push_back(scene.solver.dt / model::margin_to_warn);
     for (const double dt : steps) {
       scene.solver.dt = dt;
-      const Result<Trial> trial = trials_.run(scene, truth_, truth_.time, control_.stop);
+      const Result<Trial> trial = trials_.run(scene, truth_, truth_.asked, control_.stop);
       if (!trial) return trial.error();
       if (!trial->blew_up_at) continue;
       choice_.notes.push_back(text(point.setting) + " keeps the tolerance, but blows up " +
@@ -332,7 +370,8 @@ class Chooser {
   Truth truth_;
   TrialRunner trials_;
   std::optional<StepSearch> search_;
-  bool for_margin_ = false;  // of the chosen candidate
+  std::optional<WholeTime> whole_time_;  // where the horizon is earlier than the time that was asked for
+  bool for_margin_ = false;              // of the chosen candidate
   // [round] [ms per simulated second]
   std::vector<double> chosen_times_, runner_up_times_, present_times_;
 };

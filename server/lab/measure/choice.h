@@ -13,6 +13,8 @@ struct Choice {
   Origin origin{};
   double tolerance = 0;          ///< largest RMS position error allowed, over the cloth's size
   double time = 0, horizon = 0;  ///< simulated, and until when positions can be compared [s]
+  double asked = 0;              ///< the time over which the tolerance is to be kept [s]
+  std::string horizon_reason;    ///< how the horizon was found, and why it is less than `asked`: sentences
   double reference_error = 0;    ///< RMS position error of the reference itself, over the cloth's size
   bool met = false;              ///< true: `chosen` keeps the tolerance; false: it is the most accurate found
   /// Expected error: largest_position_error, between error_low and error_high; expected cost: cost.
@@ -33,9 +35,9 @@ struct ChooseRequest {
 
 /// The scene's own setting takes part, if it is of the wanted methods: it stays where nothing is surely
 /// cheaper. Needs a current GL context. The chosen step is at most 0.9 of the stability limit; if the
-/// tolerance is met, a run with a step a ninth longer did not blow up either. Error: a tolerance out of
-/// range, a reference that is missing or not accurate enough (with what can be done), all settings blew up,
-/// GL, or cancelled.
+/// tolerance is met, a run with a step a ninth longer did not blow up either. Beyond the horizon it keeps
+/// what can be known without a reference (whole_time.h). Error: a tolerance out of range, a reference that is
+/// missing or not accurate enough (with what can be done), all settings blew up, GL, or cancelled.
 Result<Choice> choose(const scene::Scene& scene, const ChooseRequest& request,
                       const Control<Choice>& control);
 

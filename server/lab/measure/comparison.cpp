@@ -80,9 +80,8 @@ class Stepped {
 
   bool colliders_move() const {
     const auto& colliders = simulation_->scene().colliders;
-    return std::any_of(colliders.begin(), colliders.end(), [](const scene::Collider& each) {
-      return !std::holds_alternative<std::monostate>(each.motion);
-    });
+    return std::any_of(colliders.begin(), colliders.end(),
+                       [](const scene::Collider& each) { return scene::has_motion(each.motion); });
   }
   std::vector<scene::Collider> colliders() const { return simulation_->colliders_now(); }
 

@@ -21,14 +21,11 @@ constexpr double drag = 1.5;
 constexpr double settling_time_in_swings = 16.0;
 constexpr std::uint32_t most_vertices = 4096;  // up to here Newton's method finds the balance in seconds
 
-bool moves(const scene::Motion& motion) {
-  return !std::holds_alternative<std::monostate>(motion);
-}
-
 /// Why the scene has no shape of rest that can be computed; none if it may have one.
 std::optional<Error> unfit(const reference::World& world) {
   for (const scene::Motion& motion : world.model.motions)
-    if (moves(motion)) return Error{"rest", "a pin moves, so nothing comes to rest", "pins that stand still"};
+    if (scene::has_motion(motion))
+      return Error{"rest", "a pin moves, so nothing comes to rest", "pins that stand still"};
   if (!world.scene.keys.empty())
     return Error{"rest", "keys change the scene, so nothing comes to rest", "no keys"};
   if (world.scene.wind) return Error{"rest", "the wind blows, so nothing comes to rest", "no wind"};

@@ -61,6 +61,12 @@ class StepSearch {
   /// as `error_at`.
   Result<double> step_at(Candidate& candidate, double dt);
 
+  /// True if a step of `dt` [s] may make the candidate the cheapest, or the cheapest of another method than
+  /// that.
+  bool may_compete(const Candidate& candidate, double dt) const {
+    return candidate.cost(dt) <= close_race * of_interest(candidate.setting.method);
+  }
+
   /// The method's longest stable step about the rest shape [s], exact to about 0.1 %.
   double limit_of(scene::Method method) const;
 

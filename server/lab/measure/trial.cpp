@@ -21,10 +21,6 @@ constexpr int fewest_samples = 4;       // samples of the truth that a run meets
 constexpr double most_rounding = 0.04;  // largest share of steps added in order to meet more samples
 constexpr double same_step = 1e-5;      // relative error of a step that was rounded to six digits
 
-double total(const sim::Diagnostics& state) {
-  return state.kinetic + state.elastic + state.gravitational;
-}
-
 /// Accumulates a run's errors, sample by sample.
 class ErrorsSoFar {
  public:
@@ -35,7 +31,7 @@ class ErrorsSoFar {
   void add(int k, sim::Simulation& simulation, const sim::Diagnostics& state, Trial& trial) {
     const auto sample = static_cast<std::size_t>(k - 1);
     if (sample >= truth_.energy.size()) return;
-    const double off = total(state) - truth_.energy[sample];
+    const double off = state.total_energy() - truth_.energy[sample];
     squares_ += off * off;
     ++count_;
     strain_ = std::max(strain_, state.max_strain);

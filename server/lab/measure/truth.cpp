@@ -7,6 +7,7 @@
 
 #include "server/base/text.h"
 #include "server/lab/measure/control.h"
+#include "server/lab/measure/first_touch.h"
 #include "server/lab/measure/horizon.h"
 #include "server/lab/measure/sizes.h"
 #include "server/model/extent.h"
@@ -42,6 +43,7 @@ constexpr double stiff_accuracy = 100.0;
 constexpr double share_of_scouting = 0.4;     // of the budget: two of five runs like the first one
 constexpr double share_of_first_look = 0.05;  // of that
 constexpr int fewest_stiff_looks = 3;         // with a shorter affordable time there is no reference
+constexpr int fewest_looks_to_touch = 4;      // with surfaces that touch earlier there is no reference
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -61,10 +63,11 @@ bool finite(const State& state) {
 
 class Search {
  public:
-  Search(Truth& truth, const TruthRequest& request, const std::stop_token& stop,
+  Search(Truth& truth, const TruthRequest& request, FirstTouch& touch, const std::stop_token& stop,
          const std::function<void(double)>& progress)
       : truth_(truth),
         request_(request),
+        touch_(touch),
         stop_(stop),
         progress_(progress),
         start_(Clock::now()),
@@ -119,8 +122,24 @@ class Search {
           work + ", more than fits into " + with_significant_digits(budget_, 3) +
           " s; softer or heavier springs, a coarser mesh or a shorter time would bring it back";
     else
-      truth_.notes.push_back("The reference ends at " + with_significant_digits(truth_.time, 3) +
-                             " s: " + work + ".");
+      ended_ = "The reference ends at " + with_significant_digits(truth_.time, 3) + " s: " + work +
+               ", and five runs of it have to fit into a budget of " + with_significant_digits(budget_, 3) +
+               " s. ";
+  }
+
+  /// Ends the reference at time `before` [s] if surfaces touch in `state`, at time `now` [s], or tells that
+  /// there is none. `look`: how many have gone before.
+  bool ended_by_touch(const State& state, double before, double now, int look) {
+    const std::string touching = touch_.look(state.position, now);
+    if (touching.empty()) return false;
+    const std::string when = touching + " touch before " + with_significant_digits(now, 3) + " s";
+    truth_.time = before;
+    if (look < fewest_looks_to_touch)
+      truth_.why_no_reference = when + ", and the reference knows no contact between surfaces";
+    else
+      ended_ = "The reference ends at " + with_significant_digits(before, 3) + " s: " + when +
+               ", and it knows no contact between surfaces. ";
+    return true;
   }
 
   void not_finite_after(double time) {
@@ -134,16 +153,19 @@ class Search {
     Follower follower(truth_.world, pace_, stop_);
     State state = reference::at_rest(truth_.world);
     Horizon horizon(truth_.world, truth_.size);
+    const double whole = truth_.time;
+    bool near = true;
     for (int look = 1; look <= looks_for_horizon; ++look) {
-      const double from = truth_.time * (look - 1) / looks_for_horizon,
-                   to = truth_.time * look / looks_for_horizon;
-      if (!follower.follow(state, from, to) || !follower.follow(horizon.copy(), from, to)) return cancelled;
+      const double from = whole * (look - 1) / looks_for_horizon, to = whole * look / looks_for_horizon;
+      if (!follower.follow(state, from, to) || (near && !follower.follow(horizon.copy(), from, to)))
+        return cancelled;
       if (!finite(state)) {
         not_finite_after(to);
         return ok();
       }
       progress_(0.3 * look / looks_for_horizon);
-      if (!horizon.look(state, to)) break;
+      if (ended_by_touch(state, from, to, look - 1)) break;
+      near = near && horizon.look(state, to);
     }
     set_horizon(horizon);
     return ok();
@@ -151,7 +173,7 @@ class Search {
 
   void set_horizon(const Horizon& horizon) {
     truth_.horizon = horizon.time(truth_.time);
-    truth_.horizon_reason = horizon.reason(truth_.time);
+    truth_.horizon_reason = ended_ + horizon.reason(truth_.time);
   }
 
   /// Of a stiff scene, all three at once: the pace, the time that the reference can afford, and the horizon.
@@ -183,9 +205,11 @@ class Search {
         not_finite_after(to);
         return ok();
       }
+      if (ended_by_touch(state, from, to, look - 1)) break;
       near = near && horizon.look(state, to);
       progress_(0.3 * look / looks_for_horizon);
     }
+    if (!truth_.why_no_reference.empty()) return ok();
     set_horizon(horizon);
     pace_ = scout.pace();
     truth_.notes.push_back("The scene is too stiff for RK4, which would take " +
@@ -263,11 +287,13 @@ class Search {
 
   Truth& truth_;
   const TruthRequest& request_;
+  FirstTouch& touch_;
   const std::stop_token& stop_;
   const std::function<void(double)>& progress_;
   Clock::time_point start_;
   double budget_, accuracy_;
-  Pace pace_;  // with the longest steps
+  std::string ended_;  // why the reference ends before the time that was asked for, a sentence and a space
+  Pace pace_;          // with the longest steps
 };
 
 }  // namespace
@@ -281,13 +307,12 @@ Result<Truth> truth(const scene::Scene& scene, const TruthRequest& request, cons
   Truth truth;
   truth.world = std::move(*world);
   truth.size = model::largest_extent(truth.world.model);
-  const std::vector<scene::Collider>& colliders = scene.colliders;
-  if (scene.collides(scene::ContactKind::surface) ||
-      std::any_of(colliders.begin(), colliders.end(), [](const scene::Collider& of) { return of.is_body(); }))
-    truth.notes.push_back(
-        "The reference knows no contact of surfaces, of cloths or of bodies of triangles: it is the true "
-        "motion until they touch.");
-  if (Status found = Search(truth, request, stop, progress).run(); !found) return found.error();
+  truth.asked = request.time;
+  FirstTouch touch(scene, truth.world.model);
+  if (Status found = Search(truth, request, touch, stop, progress).run(); !found) return found.error();
+  if (truth.horizon > 0.0 && truth.horizon < truth.asked)
+    truth.horizon_reason = "Judged up to " + with_significant_digits(truth.horizon, 3) + " s of the " +
+                           with_significant_digits(truth.asked, 3) + " s asked for. " + truth.horizon_reason;
   if (!truth.why_no_reference.empty()) {  // steps and costs can be measured without it
     truth.time = request.time;
     truth.horizon = 0.0;

@@ -20,10 +20,12 @@ inline constexpr int samples_to_horizon = 64;
 
 struct Truth {
   reference::World world;
-  double size = 0;               ///< largest extent of a cloth at rest [m]
-  double time = 0;               ///< simulated [s]: as asked for, or less where that was too much work
-  double horizon = 0;            ///< positions can be compared up to this time [s]; 0: at no time
-  std::string horizon_reason;    ///< how the horizon was found, a sentence
+  double size = 0;     ///< largest extent of a cloth at rest [m]
+  double asked = 0;    ///< time to simulate that was asked for [s]
+  double time = 0;     ///< simulated [s]: as asked for, or less where that was too much work, or where
+                       ///< surfaces touch, of which the reference knows no contact
+  double horizon = 0;  ///< positions can be compared up to this time [s]; 0: at no time
+  std::string horizon_reason;    ///< how the horizon was found, and why it is less than `asked`: sentences
   std::string why_no_reference;  ///< why there is no reference, and what can be done; then `time` is as asked
                                  ///< for and there are no samples. Empty: there is a reference
   double spacing = 0;  ///< between two samples [s]: a 64th of the horizon (without one, of the time)

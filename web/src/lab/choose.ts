@@ -16,6 +16,7 @@ function atMost({ largest_position_error: seen, largest_position_error_high: hig
 export class ChooseTab extends Tab<"choose"> {
   private readonly tolerance = new ToleranceField();
   private readonly time = makeNumber("1", "1");
+  private readonly judged = make("p", "lab-fine"); // until when positions are, and why
   private readonly answer = make("p", "lab-answer");
   private readonly cards = make("div", "lab-cards");
   private readonly picture = new Picture({
@@ -55,7 +56,7 @@ export class ChooseTab extends Tab<"choose"> {
     this.addMethods();
     this.addOptions(labelled("simulate [s]", this.time, "how much of the motion is judged"));
     this.element.querySelector(".lab-start")?.before(this.tolerance.element);
-    this.content.append(this.answer, this.cards, this.picture.element, this.table.element);
+    this.content.append(this.judged, this.answer, this.cards, this.picture.element, this.table.element);
   }
 
   override sceneChanged(): void {
@@ -76,6 +77,7 @@ export class ChooseTab extends Tab<"choose"> {
     const document = this.host.document();
     if (document && !this.host.jobs.of("choose").stale) this.size = sizeOf(document);
     this.answer.classList.toggle("unmet", choice.complete && !choice.met);
+    say(this.judged, choice.horizon_reason);
     say(this.answer, choice.complete ? choice.why : "");
     this.cards.hidden = !choice.complete;
     if (choice.complete) this.showCards(choice);

@@ -96,7 +96,9 @@ export interface Choice extends Measured {
   kind: "choose";
   tolerance: number;
   time_s: number;
+  asked_s: number;
   horizon_s: number;
+  horizon_reason: string;
   reference_error: number;
   met: boolean;
   chosen: Point;
