@@ -94,7 +94,9 @@ for (const [width, height, hasTouch] of [
       assert.deepEqual(await viewer.positions(), was);
 
       // taken back: the run as it was, with its scene, its frames and its pace
-      await press(page.getByRole("button", { name: /^Undo: to \d/ }));
+      await page.getByRole("button", { name: /^Undo: Go on from \d/ }).waitFor();
+      if (hasTouch) await press(page.getByRole("button", { name: /^Undo: to \d/ }));
+      else await page.keyboard.press("Control+z");
       const back = await client.nextNotification("sim.status", ({ step: now }) => now > shown + 600);
       assert.equal((await scene()).gravity[1], -3);
       await client.nextNotification("sim.status", ({ step: now, playing }) => playing && now > back.step);
@@ -110,6 +112,10 @@ for (const [width, height, hasTouch] of [
       const second = await told();
       await press(page.getByRole("button", { name: "Go on from here" }));
       await client.nextNotification("sim.status", ({ step: now, playing }) => now === second && !playing);
+      await page.locator(".notice", { hasText: "Back at" }).waitFor();
+      // another viewer goes back, too: that is what could be undone now, by him
+      await client.request("timeline.resume", { step: second - 10 });
+      await page.locator(".notice", { hasText: "Back at" }).waitFor({ state: "detached" });
       await page.getByRole("button", { name: "Play", exact: true }).waitFor();
       await page.keyboard.press("Space");
       await eventually(

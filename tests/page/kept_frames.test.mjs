@@ -30,9 +30,14 @@ test("of large frames so many are kept as there is room for, and one at least", 
 test("steps that the session has gone back behind, and another cloth's, are forgotten", () => {
   const kept = new KeptFrames();
   for (let i = 0; i < 10; ++i) kept.take(frame(10 * i), i);
+  const back = [];
+  kept.wentBack = (step) => back.push(step);
+  kept.take(frame(90), 10); // the same step again
   kept.take(frame(45), 10);
   assert.deepEqual(steps(kept), [0, 10, 20, 30, 40, 45]);
+  assert.deepEqual(back, [45]);
   kept.take(frame(0, 1000, 2), 11);
+  assert.deepEqual(back, [45, 0]);
   assert.deepEqual(steps(kept), [0]);
   assert.equal(kept.bytes, 1000);
 });

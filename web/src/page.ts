@@ -225,6 +225,7 @@ export class Page {
       picture: this.picture,
       mayEdit: () => this.mayEdit && this.connection.open,
       resume: (to) => this.connection.request("timeline.resume", to),
+      offerUndo: (deed) => this.undo.offer(deed),
       transport: this.transport,
       keys: () => this.store.document?.keys ?? [],
       changed: () => layout.cardToggled(),

@@ -11,6 +11,7 @@ export interface KeptFrame {
 
 export class KeptFrames {
   bytes = 0;
+  wentBack: (step: number) => void = () => undefined; ///< the session has gone back to this step, or one before it
   private frames: KeptFrame[] = [];
   private first = 0; // frames before it are dropped
 
@@ -24,6 +25,7 @@ export class KeptFrames {
     const { step, topologyRevision } = frame.header;
     const last = this.frames.at(-1)?.frame.header;
     if (last && last.topologyRevision !== topologyRevision) this.clear();
+    if (last && (last.topologyRevision !== topologyRevision || last.step > step)) this.wentBack(step);
     while (this.frames.length > this.first && (this.frames.at(-1) as KeptFrame).frame.header.step >= step)
       this.bytes -= (this.frames.pop() as KeptFrame).frame.buffer.byteLength;
     this.frames.push({ frame, at });

@@ -3,6 +3,7 @@
 import { button, element } from "./dom";
 import { takes } from "./keys";
 import { notice, noticeError } from "./notices";
+import { type Deed, goingOn } from "./undo";
 import { longest, mostBytes, type KeptFrame } from "../link/kept_frames";
 import type { Key } from "../link/scene_types";
 import type { Picture } from "../picture";
@@ -12,6 +13,7 @@ export interface TimelineHost {
   picture: Picture;
   mayEdit(): boolean;
   resume(to: { step: number } | { undo: true }): Promise<unknown>;
+  offerUndo(deed: Deed | null): void; ///< of going back
   transport: Pick<Transport, "playing" | "start">;
   keys(): Key[];
   changed(): void; ///< the card came or went
@@ -30,7 +32,8 @@ export class Timeline {
   private readonly from = document.createElement("button");
   private frames: KeptFrame[] = []; // while one looks back: those that were there when it began
   private timer = 0;
-  private closeUndo = (): void => undefined; // the server undoes the last going back alone
+  private closeNotice = (): void => undefined;
+  private goingTo = -1; // the step that this page has the session go back to
 
   constructor(private readonly host: TimelineHost) {
     this.card.id = "timeline";
@@ -52,6 +55,7 @@ export class Timeline {
     this.card.append(this.marks, this.range, this.where, this.size, this.live, this.from);
     element("transport", HTMLElement).before(this.card);
     addEventListener("keydown", (event) => this.key(event), { capture: true });
+    host.picture.kept.wentBack = (step) => step !== this.goingTo && this.withdraw();
     this.open(true);
   }
 
@@ -161,14 +165,17 @@ export class Timeline {
     const until = left.at(-1)?.frame.header.time ?? time;
     const { playing } = this.host.transport;
     this.from.disabled = true;
+    this.goingTo = step;
     try {
       await this.host.resume({ step });
       this.goLive();
-      this.closeUndo();
-      this.closeUndo = notice("info", {
+      this.withdraw();
+      const undo = (): void => this.undo(left, playing);
+      this.host.offerUndo({ name: `${goingOn} ${time.toFixed(2)} s`, undo });
+      this.closeNotice = notice("info", {
         title: `Back at ${time.toFixed(3)} s`,
         lines: ["Paused there. Play goes on from it."],
-        actions: [{ label: `Undo: to ${until.toFixed(3)} s`, run: () => this.undo(left, playing) }],
+        actions: [{ label: `Undo: to ${until.toFixed(3)} s`, run: undo }],
         stays: true,
       });
     } catch (error) {
@@ -177,8 +184,15 @@ export class Timeline {
     }
   }
 
+  // The server undoes the last going back alone, whoever went.
+  private withdraw(): void {
+    this.closeNotice();
+    this.host.offerUndo(null);
+  }
+
   // The frames that were left come back with the run.
   private undo(left: KeptFrame[], play: boolean): void {
+    this.withdraw();
     this.host.resume({ undo: true }).then(
       () => {
         this.host.picture.kept.restore(left);

@@ -36,8 +36,17 @@ function wayOf({ key, shiftKey }: KeyboardEvent): Way | null {
   return key.toLowerCase() === "y" ? "redo" : null;
 }
 
+/// What was done last, and is no change of the scene.
+export interface Deed {
+  name: string;
+  undo(): void;
+}
+/// The server names so the change of the scene that comes with going back.
+export const goingOn = "Go on from";
+
 export class Undo {
   private history: History | null = null;
+  private deed: Deed | null = null;
   private enabled = false;
   private client = 0;
 
@@ -70,6 +79,7 @@ export class Undo {
   told(history: History): void {
     const { last } = history;
     if (this.history && last) this.name(last);
+    if (last && !last.name.startsWith(goingOn)) this.deed = null;
     this.history = history;
     this.show();
     this.host.told(history);
@@ -83,10 +93,17 @@ export class Undo {
     } else notice("info", { title: `${words[what].done}: ${name}`, lines: another ? ["By another viewer."] : [] });
   }
 
+  /// This is the next to undo, until the scene changes; null: nothing but changes of the scene is.
+  offer(deed: Deed | null): void {
+    this.deed = deed;
+    this.show();
+  }
+
   /// Undoes or redoes a change. With a revision only if nobody has changed the scene since.
   async go(way: Way, revision?: number): Promise<void> {
     await this.host.settled(way === "undo" ? kept : undefined);
     if (!this.enabled) return;
+    if (way === "undo" && this.deed && revision === undefined) return this.deed.undo();
     try {
       const { applies } = await this.host.request<{ applies: string }>(`scene.${way}`, revision ? { revision } : {});
       showApplied(applies);
@@ -100,7 +117,7 @@ export class Undo {
   private show(): void {
     for (const way of ["undo", "redo"] as const) {
       const { verb, keys } = words[way];
-      const name = this.history?.[way] ?? null;
+      const name = (way === "undo" && this.deed?.name) || (this.history?.[way] ?? null);
       const control = button(way);
       // Stays a place for the focus when there is nothing left to undo.
       control.disabled = !this.enabled;
