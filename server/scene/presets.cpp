@@ -11,7 +11,7 @@ namespace clothlab::scene {
 const std::vector<Preset>& presets() {
   static const std::vector<Preset> list = {
       {"seed", "a cloth on two swinging corners falls against a sphere"},
-      {"flag", "one edge on a pole that swings to and fro"},
+      {"flag", "held by a pole at one edge, in wind that comes in gusts"},
       {"curtain", "hung from rings along its top edge; a sphere swings against it"},
       {"tablecloth", "its middle lies on a table, its border falls over the edges"},
       {"drape", "a free cloth falls over a sphere and onto the floor"},
