@@ -1,5 +1,6 @@
 // The commands that change the scene, or undo and redo its changes; and how a new scene takes the old one's
 // place.
+#include <algorithm>
 #include <utility>
 
 #include "server/model/remedy.h"
@@ -9,6 +10,17 @@
 #include "server/session/stepper.h"
 
 namespace clothlab::session {
+
+namespace {
+
+/// True if a patch puts another document in the place of all: that its cloth is new is what was asked for.
+bool replaces_all(const json& patch) {
+  return patch.is_array() && std::any_of(patch.begin(), patch.end(), [](const json& operation) {
+           return operation.value("path", "/") == "";
+         });
+}
+
+}  // namespace
 
 void Stepper::perform(GetScene&, const Ticket& ticket) {
   reply(ticket, scene_text());
@@ -68,9 +80,10 @@ void Stepper::perform(PatchScene& patch, const Ticket& ticket) {
   if (!depth) return reply(ticket, refused(depth.error()));
   answer.update({{"revision", revision_}, {"applies", sim::name(*depth)}});
   reply(ticket, std::move(answer));
+  const bool another = replaces_all(patch.patch);
   announce_scene(std::move(patch.patch), ticket.asker);
   remember(std::move(made));
-  tell_if_rebuilt(*depth);
+  if (!another) tell_if_rebuilt(*depth);
 }
 
 /// If the cloth of `document`, which `patch` has made, would not hold with its solver, changes the solver of

@@ -137,6 +137,14 @@ test("a patch says how deep it cuts, and only a rebuilt cloth resets time", asyn
   );
   assert.equal(await at(), 0);
   assert.match((await notice).text, /rebuilt/);
+  // another scene has another cloth: nobody needs to be told
+  const { document: other } = await client.request("scene.get");
+  other.cloths[0].mesh.grid.columns = 12;
+  const seen = client.messages.length;
+  assert.equal(await apply([{ op: "replace", path: "", value: other }]), "cloth");
+  await client.statuses(2);
+  const notices = client.messages.slice(seen).filter(({ method }) => method === "notice");
+  assert.deepEqual(notices, []);
 });
 
 test("an invalid patch answers -32602 with the scene's pointer and changes nothing", async () => {

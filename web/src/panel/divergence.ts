@@ -43,7 +43,7 @@ export class Divergence {
     const limit = stability?.dt_limit;
     const dt = limit ? saferStep(limit) : 0;
     this.tell({
-      reason: "it stopped at its last good state before this page was opened",
+      reason: "It stopped at its last good state before this page was opened",
       ...(dt > 0 ? { remedy: { text: `set dt to ${dt} s, below its limit`, patch: { solver: { dt } } } } : {}),
     });
   }
