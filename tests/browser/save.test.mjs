@@ -119,6 +119,8 @@ browserTest("a video is a WebM that plays, with the motion that was on screen", 
     (text) => /^Stop video \([2-9] s\)$/.test(text),
   );
   await page.screenshot({ path: `${screenshots}save-video-900x600.png` });
+  const drawn = await page.evaluate(() => [window.clothlab.stage.canvas.width, window.clothlab.stage.canvas.height]);
+  assert.ok(Math.min(...drawn) >= 1080, `a film of 1080 x 1080 is drawn with ${drawn.join(" x ")} pixels`);
   const { name, bytes } = await saved(viewer, () => video.click());
   assert.match(name, /^seed-\d+\.\d\ds\.webm$/);
   assert.deepEqual([...bytes.subarray(0, 4)], [0x1a, 0x45, 0xdf, 0xa3], "EBML");

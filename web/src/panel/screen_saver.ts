@@ -76,7 +76,6 @@ export class ScreenSaver {
     const { size } = this;
     Object.assign(this.canvas, size).getContext("2d"); // there is no stream of a canvas without
     stage.film = { size, take: () => paint(stage, this.canvas, backdrop) };
-    stage.invalidate();
     const stream = this.canvas.captureStream(rate);
     const recorder = (this.recorder = new MediaRecorder(stream, { mimeType: type, videoBitsPerSecond: 8e6 }));
     const chunks: Blob[] = [];

@@ -53,7 +53,7 @@ export class Stage {
   readonly cloth: ClothView;
   onShow = (): void => undefined; ///< another frame is to be drawn
   onDraw = (): void => undefined; ///< before each picture
-  film: Film | null = null; ///< takes a picture of its own with each picture of the window
+  private shot: Film | null = null;
   onLost = (): void => undefined; ///< the WebGL context is lost; three.js restores what it can when the context returns
   readonly canvas: HTMLCanvasElement;
   private readonly renderer: WebGLRenderer;
@@ -174,6 +174,12 @@ export class Stage {
     if (!replacement) this.cloths = [this.cloth];
     this.cloth.object.visible = this.cloth.caster.visible = this.overlays.visible = !replacement;
     this.resize(this.area);
+  }
+
+  /// Takes a picture of its own with each picture of the window.
+  set film(film: Film | null) {
+    this.shot = film;
+    this.takeQuality();
   }
 
   get replaced(): boolean {
@@ -359,7 +365,7 @@ export class Stage {
   /// Draws one picture of this size, with the scene in its middle and without marks, and calls `take`, which can copy
   /// it from the canvas. A replacement is drawn as it is in the window.
   photograph({ width, height }: PictureSize, take: () => void): void {
-    const { film } = this;
+    const { shot } = this;
     const samples = width * height * this.stillScale ** 2 <= mostSamples ? this.stillScale : 1;
     if (!this.replacement) {
       this.renderer.setPixelRatio(samples);
@@ -370,9 +376,9 @@ export class Stage {
       this.setScale(this.stillScale);
     }
     this.setFineness(true);
-    this.film = null;
+    this.shot = null;
     this.expose({ size: { width, height }, take }, this.fitted);
-    this.film = film;
+    this.shot = shot;
     this.resize(this.area);
   }
 
@@ -410,7 +416,7 @@ export class Stage {
 
   private render(): void {
     this.dirty = false;
-    if (this.film) this.expose(this.film, false);
+    if (this.shot) this.expose(this.shot, false);
     this.onDraw();
     if (this.replacement) this.renderReplacement();
     else this.renderOnce();
@@ -439,10 +445,15 @@ export class Stage {
     this.groundShadow.compile(samples.flatMap((sample) => sample.cast));
   }
 
-  // Sets the size of the drawing buffer: three.js keeps the canvas's size in CSS pixels.
+  // Sets the size of the drawing buffer: three.js keeps the canvas's size in CSS pixels. The pictures of a film that is
+  // larger than the window are drawn there, too, with all of their pixels.
   private setScale(scale: number): void {
     this.scale = scale;
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2) * scale);
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    const film = this.shot ? Math.max(this.shot.size.width / width, this.shot.size.height / height) : 0;
+    const most = Math.sqrt((2 * mostSamples) / (width * height));
+    const ratio = Math.min(devicePixelRatio, 2);
+    this.renderer.setPixelRatio(film > ratio ? Math.min(film, most) : ratio * scale);
     this.pixelRatio.value = this.renderer.getPixelRatio();
   }
 
