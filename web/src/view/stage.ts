@@ -32,6 +32,8 @@ import type { Graphics } from "./webgl";
 
 const stillAfter = 300; // [ms] without a change: then the picture is drawn at full resolution
 const mostSamples = 3840 * 2160; // of a picture: more take memory that not every device has
+const mostOfFilm = 2 * mostSamples; // whose pictures have the window's shape as they are drawn
+const mostInSoftware = 1920 * 1080; // of a film's picture: more take seconds each
 const explodedAt = 12; // times the scene's radius
 const lightFrom = new Vector3(0.55, 1, 0.62).normalize();
 
@@ -87,10 +89,12 @@ export class Stage {
   private lastLook = 0;
   private scale = 1; // resolution of the picture; a still picture is drawn sharp at any quality level
   private readonly stillScale: number;
+  private readonly software: boolean;
   radius = 1; ///< of the scene [m]
 
   constructor({ canvas, context, software }: Graphics) {
     this.canvas = canvas;
+    this.software = software;
     softenShadows(software);
     this.stillScale = software ? 1.5 : 1; // a software renderer has no antialiasing: more pixels smooth the edges
     this.renderer = new WebGLRenderer({ canvas, context, alpha: true });
@@ -451,7 +455,7 @@ export class Stage {
     this.scale = scale;
     const { clientWidth: width, clientHeight: height } = this.canvas;
     const film = this.shot ? Math.max(this.shot.size.width / width, this.shot.size.height / height) : 0;
-    const most = Math.sqrt((2 * mostSamples) / (width * height));
+    const most = Math.sqrt((this.software ? mostInSoftware : mostOfFilm) / (width * height));
     const ratio = Math.min(devicePixelRatio, 2);
     this.renderer.setPixelRatio(film > ratio ? Math.min(film, most) : ratio * scale);
     this.pixelRatio.value = this.renderer.getPixelRatio();
