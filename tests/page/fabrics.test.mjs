@@ -5,7 +5,7 @@ import { load } from "./module.mjs";
 
 const { addressed, withFabrics } = await load("link/fabrics");
 const { applyPatch } = await load("link/json_patch");
-const { fabricFields } = await load("panel/fabric_fields");
+const { fabricFields, untilUnstable } = await load("panel/fabric_fields");
 
 const own = { mass: { per_vertex: 0.1 }, material: { model: "springs", structural: 300, damping: 2 } };
 const cotton = { material: { model: "fem", fabric: "cotton", shear: 200, grain: 0 } };
@@ -84,3 +84,22 @@ test("below the menu is what the fabric is like, and an offer to give up numbers
 });
 
 test("a server without fabrics has no menu of them", () => assert.deepEqual(fabricFields(shown, 1, []), []));
+
+test("a sheet's numbers end where the square of Poisson's ratio is that of warp over weft", () => {
+  const sheet = { model: "fem", warp: 2365, weft: 3801, poisson: 0.311 };
+  const moved = (key, value, of = sheet) => {
+    const document = { cloths: [{ material: of }] };
+    return applyPatch(document, untilUnstable(key, "/cloths/0")(value, document)).cloths[0].material;
+  };
+  for (const [key, value] of [
+    ["warp", 10],
+    ["weft", 200_000],
+    ["poisson", 1],
+  ]) {
+    const { warp, weft, poisson } = moved(key, value);
+    const share = poisson ** 2 / (warp / weft);
+    assert.ok(share < 1 && share > 0.99, `${key}: ${share}`);
+  }
+  assert.equal(moved("warp", 1000).warp, 1000);
+  assert.equal(moved("weft", 200_000, { ...sheet, poisson: 0 }).weft, 200_000);
+});

@@ -1,7 +1,8 @@
 // The menu of fabrics in a cloth's section: the fabric that the cloth names, or the numbers of its own.
 import type { Field, Note, SolverFacts, Values } from "./field";
 import type { Fabric } from "../link/fabrics";
-import type { Cloth, Material, Operation, SceneDocument } from "../link/scene_types";
+import { valueAt } from "../link/json_patch";
+import type { Cloth, Fem, Material, Operation, SceneDocument } from "../link/scene_types";
 
 const custom = "custom";
 /// Numbers of a material that a fabric gives.
@@ -28,6 +29,22 @@ function ownNumbers(base: string, { material, mass }: Cloth): Operation[] {
     { op: "replace", path: `${base}/mass`, value: mass },
   ];
 }
+
+/// The square of Poisson's ratio is below warp over weft, or the sheet would gain energy by being stretched (an
+/// orthotropic sheet's stiffness is positive definite): a number goes as far as the two others let it.
+const room = 1.001;
+const nearest: Record<"warp" | "weft" | "poisson", (asked: number, sheet: Fem) => number> = {
+  warp: (asked, { weft, poisson }) => Math.max(asked, room * weft * poisson ** 2),
+  weft: (asked, { warp, poisson }) => (poisson > 0 ? Math.min(asked, warp / (room * poisson ** 2)) : asked),
+  poisson: (asked, { warp, weft }) => Math.min(asked, Math.sqrt(warp / (room * weft))),
+};
+export const untilUnstable =
+  (key: keyof typeof nearest, base: string) =>
+  (value: unknown, document: SceneDocument): Operation[] => {
+    const sheet = valueAt(document, `${base}/material`) as Fem;
+    const reached = Number(nearest[key](Number(value), sheet).toPrecision(6));
+    return [{ op: "replace", path: `${base}/material/${key}`, value: reached }];
+  };
 
 /// What the fabric is like; and, if the cloth has numbers of its own, an offer to give them up.
 function fabricNote(index: number, base: string, fabrics: Fabric[], values: Values, facts: SolverFacts): Note {

@@ -1,5 +1,5 @@
 // Lists the panel's sections and fields for a scene, each tied to JSON Pointers of the document.
-import { fabricFields, isKnown } from "./fabric_fields";
+import { fabricFields, isKnown, untilUnstable } from "./fabric_fields";
 import { type Field, kinds, meter, type Note, number, type Section, type SolverFacts, vector } from "./field";
 import { motionFields } from "./motion_fields";
 import { additions, bodyDeeds, clothDeeds, pinDeeds } from "./parts";
@@ -96,10 +96,21 @@ function sheetFields(material: Fem, base: string): Field[] {
           number(`strain limit, ${direction}`, at(`strain_limit/${direction}`), { min: 0.001, max: 1, log: true }),
         );
   return [
-    number("warp", at("warp"), modulus, { hint: "Tension a metre of width over strain along the warp" }),
-    number("weft", at("weft"), modulus, { hint: "Tension a metre of width over strain along the weft" }),
+    number("warp", at("warp"), modulus, {
+      hint: "Tension a metre of width over strain along the warp",
+      change: untilUnstable("warp", base),
+    }),
+    number("weft", at("weft"), modulus, {
+      hint: "Tension a metre of width over strain along the weft",
+      change: untilUnstable("weft", base),
+    }),
     number("shear", at("shear"), { ...modulus, min: 1, zero: true }, { hint: "Resistance to slanting the threads" }),
-    number("poisson", at("poisson"), { min: 0, max: 1, step: 0.01 }, { hint: "How much it narrows when pulled" }),
+    number(
+      "poisson",
+      at("poisson"),
+      { min: 0, max: 1, step: 0.01 },
+      { hint: "How much it narrows when pulled", change: untilUnstable("poisson", base) },
+    ),
     ...bending,
     number("damping", at("damping"), { min: 1e-5, max: 0.1, log: true, zero: true, unit: "s" }),
     number("grain", at("grain"), { min: -90, max: 90, step: 1, unit: "°" }, { hint: "From the columns to the warp" }),
