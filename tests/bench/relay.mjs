@@ -13,6 +13,7 @@ import { parseArgs } from "node:util";
 import WebSocket from "ws";
 import { NatsServer, noBus } from "../protocol/bus.mjs";
 import { Server, sleep } from "../protocol/harness.mjs";
+import { processorSeconds } from "./processor.mjs";
 
 const why = noBus();
 if (why) throw new Error(why);
@@ -58,12 +59,6 @@ class Viewer {
   }
 }
 
-const ticks = 100; // of the kernel's clock a second, on every Linux of today
-/// Processor time that a process has used [s].
-function cpu(pid) {
-  const fields = readFileSync(`/proc/${pid}/stat`, "utf8").split(") ")[1].split(" ");
-  return (Number(fields[11]) + Number(fields[12])) / ticks;
-}
 const memory = (pid) => Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]); // [kB]
 
 async function measure(count, ports) {
@@ -72,7 +67,7 @@ async function measure(count, ports) {
   await sleep(3000);
   const pids = [origin, bus, ...relays].map(({ child }) => child.pid);
   const sample = async () => ({
-    cpu: pids.map(cpu),
+    cpu: pids.map(processorSeconds),
     bus: await origin.metric("clothlab_bus_bytes_sent_total"),
     direct: await origin.metric("clothlab_bytes_sent_total"),
     steps: await origin.metric("clothlab_steps_total"),

@@ -4,10 +4,10 @@
 //   node tests/bench/sessions.mjs [NUMBER,NUMBER...] [--seconds S] [--out FILE] PROGRAM...
 //   e.g. node tests/bench/sessions.mjs 1,2,16 before/clothlab build/release/clothlab
 // Prints (and writes) JSON with medians of three rounds. It waits until kernels are compiled before it measures.
-import { readFileSync } from "node:fs";
 import { writeFile } from "node:fs/promises";
 import { cpus } from "node:os";
 import { Client, Server, sleep } from "../protocol/harness.mjs";
+import { processorSeconds } from "./processor.mjs";
 
 const args = process.argv.slice(2);
 const option = (name) => (args.includes(name) ? args.splice(args.indexOf(name), 2)[1] : null);
@@ -31,12 +31,6 @@ function countFrames(client) {
   };
 }
 
-/// Processor time of a process so far [s].
-function processorTime(pid) {
-  const words = readFileSync(`/proc/${pid}/stat`, "utf8").split(") ")[1].split(" ");
-  return (Number(words[11]) + Number(words[12])) / 100;
-}
-
 async function measure(program, number) {
   process.env.CLOTHLAB = program;
   const server = await Server.start("--scene", "seed", "--max-sessions", "32");
@@ -53,7 +47,12 @@ async function measure(program, number) {
     const simulated = () =>
       clients.map((client) => client.messages.filter((m) => m.method === "sim.status").at(-1).params.time);
     const frames = () => clients.reduce((sum, client) => sum + client.count, 0);
-    const before = { time: simulated(), frames: frames(), cpu: processorTime(server.child.pid), at: performance.now() };
+    const before = {
+      time: simulated(),
+      frames: frames(),
+      cpu: processorSeconds(server.child.pid),
+      at: performance.now(),
+    };
     await sleep(1000 * seconds);
     const elapsed = (performance.now() - before.at) / 1000;
     const factors = simulated().map((time, i) => (time - before.time[i]) / elapsed);
@@ -62,7 +61,7 @@ async function measure(program, number) {
       real_time_factor_of_all: all,
       least_of_mean: (Math.min(...factors) * number) / all,
       frames_per_s_each: (frames() - before.frames) / elapsed / number,
-      cores: (processorTime(server.child.pid) - before.cpu) / elapsed,
+      cores: (processorSeconds(server.child.pid) - before.cpu) / elapsed,
     };
   } finally {
     await server.stop();

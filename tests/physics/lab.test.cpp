@@ -4,6 +4,7 @@
 
 #include "server/base/text.h"
 #include "server/lab/measure/choice.h"
+#include "server/lab/measure/control.h"
 #include "server/lab/measure/trial.h"
 #include "server/lab/measure/truth.h"
 #include "server/lab/measure/whole_time.h"
@@ -79,6 +80,28 @@ TEST_CASE("the lab's reference of the swinging cloth is as exact as it says, for
   // The estimate is within a factor of three of the error, and as small as was asked for.
   CHECK(off < 3.0 * found.position_error);
   CHECK(found.position_error < 1e-7 * found.size);
+}
+
+TEST_CASE("a coarse reference is told once, before the steps are halved further, and can end the work") {
+  std::vector<Truth> told;
+  TruthRequest request{0.3, 1e-8, 30.0};  // RK4's longest steps have an error of 1e-7
+  request.early = [&](const Truth& coarse) {
+    told.push_back(coarse);
+    return ok();
+  };
+  const Truth found = truth_of(swinging(), request);
+  REQUIRE(told.size() == 1);
+  REQUIRE(told[0].position.size() == samples_to_horizon);
+  CHECK(told[0].position_error > found.position_error);
+  // Its estimate is within a factor of three of the error.
+  CHECK(reference::rms_distance(told[0].position.back(), found.position.back()) <
+        3.0 * told[0].position_error);
+  CHECK(told[0].energy.size() == found.energy.size());
+
+  request.early = [](const Truth&) -> Status { return cancelled; };
+  const Result<Truth> ended = truth(swinging(), request, {}, [](double) {});
+  REQUIRE(!ended);
+  CHECK(was_cancelled(ended.error()));
 }
 
 TEST_CASE("a horizon ends where a cloth buckles, and a tangle has none: the lab says why") {

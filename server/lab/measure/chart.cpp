@@ -39,11 +39,12 @@ class ChartMeasurement {
   Result<Chart> run() {
     chart_.scene = scene_.name;
     chart_.renderer = gl::renderer_name();
-    if (Status computed = compute_truth(); !computed) return computed.error();
     trials_.measure_convergence(true);
-    ladders_ = make_ladders(scene_, request_, truth_);
+    if (Status computed = compute_truth(); !computed) return ended(computed.error());
     if (Status measured = measure_present(); !measured) return ended(measured.error());
     control_.arrived(chart_);
+    if (Status bounded = compute_bounds(); !bounded) return ended(bounded.error());
+    ladders_ = make_ladders(scene_, request_, truth_);
     while (Ladder* ladder = cheapest()) {
       if (Status measured = climb(*ladder); !measured) return ended(measured.error());
       control_.arrived(chart_);
@@ -70,12 +71,27 @@ class ChartMeasurement {
     const auto progress = [this](double share) {
       control_.progress({share * share_of_truth, 1.0, "the reference, in double precision"});
     };
+    const auto early = [this](const Truth& coarse) -> Status {
+      take(coarse);
+      if (Status measured = measure_present(); !measured) return measured;
+      control_.arrived(chart_);
+      return ok();
+    };
     Result<Truth> found = truth(scene_,
                                 {request_.time.value_or(1.0), 1e-7, share_of_truth * request_.budget,
-                                 share_of_stiff_truth * request_.budget},
+                                 share_of_stiff_truth * request_.budget, early},
                                 control_.stop, progress);
     if (!found) return found.error();
-    truth_ = std::move(*found);
+    take(std::move(*found));
+    return ok();
+  }
+
+  /// Compares with this truth from now on. A point that was compared with a coarse one is measured again.
+  void take(Truth found) {
+    truth_ = std::move(found);
+    chart_.points.clear();
+    chart_.left_out.clear();
+    times_.clear();
     chart_.size = truth_.size;
     chart_.time = truth_.time;
     chart_.horizon = truth_.horizon;
@@ -85,8 +101,7 @@ class ChartMeasurement {
     if (!truth_.why_no_reference.empty()) {
       const std::string why = "There is no reference: " + truth_.why_no_reference + ".";
       for (const Axis axis : {Axis::position, Axis::energy, Axis::strain}) facts(axis) = {false, why, {}, {}};
-      chart_.notes.push_back(why + " Costs and blow-ups can still be charted" +
-                             (settling_ ? ", and the shape of rest." : "."));
+      chart_.notes.push_back(why + " Costs and blow-ups can still be charted.");
     } else {
       position = {truth_.horizon > 0.0, truth_.horizon > 0.0 ? "" : truth_.horizon_reason, {}, {}};
       if (position.available) position.reference_error = truth_.position_error / truth_.size;
@@ -96,8 +111,12 @@ class ChartMeasurement {
         chart_.notes.push_back(truth_.horizon_reason +
                                " Energy and the largest strain can still be compared, statistically.");
     }
+  }
+
+  /// What only some of the points, or the picture, are compared with.
+  Status compute_bounds() {
     if (Status settles = compute_rest(); !settles) return settles;
-    return position.available ? compute_floor() : ok();
+    return facts(Axis::position).available ? compute_floor() : ok();
   }
 
   Status compute_rest() {
@@ -187,8 +206,8 @@ class ChartMeasurement {
         ladder.go_on(decisive_error(known.error), facts(Axis::position).reference_error);
         return ok();
       }
-    control_.progress(
-        {std::clamp(elapsed() / request_.budget, share_of_truth, 0.99), 1.0, text(point.setting)});
+    control_.progress({std::clamp(elapsed() / request_.budget, ladders_.empty() ? 0.0 : share_of_truth, 0.99),
+                       1.0, text(point.setting)});
     const scene::Scene scene = with(scene_, point.setting);
     const double long_enough = ladder.price(until()) <= most_a_point() ? until() : horizon();
     Result<Trial> trial = trials_.run(scene, truth_, long_enough, control_.stop, late * most_a_point());

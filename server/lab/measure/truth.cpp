@@ -258,11 +258,21 @@ class Search {
       if (truth_.position_error <= accuracy_ * truth_.size) break;
       if (halving > 2 && difference > 0.7 * difference_before) break;  // no better: chaos or contacts
       difference_before = difference;
+      if (halving > 1 || !request_.early) continue;
+      take(*coarse);
+      const Clock::time_point told = Clock::now();
+      if (Status taken = request_.early(truth_); !taken) return taken;
+      budget_ += seconds_since(told);
+      begun += Clock::now() - told;
     }
-    truth_.position = std::move(coarse->position);
-    truth_.energy = std::move(coarse->energy);
-    truth_.strain = std::move(coarse->strain);
+    take(std::move(*coarse));
     return ok();
+  }
+
+  void take(Run run) {
+    truth_.position = std::move(run.position);
+    truth_.energy = std::move(run.energy);
+    truth_.strain = std::move(run.strain);
   }
 
   /// Returns the difference of two runs at the horizon, RMS [m] (without a horizon 0), and estimates the

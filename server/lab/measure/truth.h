@@ -45,6 +45,9 @@ struct TruthRequest {
   double accuracy = 1e-7;  ///< error of the reference to aim for: RMS over size at the horizon
   double budget = 30.0;    ///< wall time to spend [s]
   std::optional<double> stiff_budget = {};  ///< the same for a scene too stiff for RK4 [s]; none: as `budget`
+  /// Is told the truth as two runs have it, with its larger errors, before the steps are halved further,
+  /// which takes most of the time. What it takes itself is not of the budget; its error ends the work.
+  std::function<Status(const Truth& coarse)> early = {};
 };
 
 /// Runs the reference in double precision, by RK4 or, for a scene for which that costs less, by Esdirk
