@@ -1,10 +1,11 @@
 // Cost of a step under each method, on the seed scene with SIDE vertices per side: time, dispatches, bytes.
 // The methods take turns in every round, so that a noisy machine disturbs all alike and their ratios stay
-// valid. Usage: bench_methods SIDE ROUNDS; it prints one JSON line per method. methods.mjs runs it for all
-// sizes.
+// valid. Usage: bench_methods SIDE ROUNDS [METHOD]; it prints one JSON line per method. methods.mjs runs it
+// for all sizes.
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <string_view>
 #include <vector>
 
 #include "server/gl/context.h"
@@ -92,7 +93,7 @@ struct Contestant {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return std::fputs("usage: bench_methods SIDE ROUNDS\n", stderr), 2;
+  if (argc != 3 && argc != 4) return std::fputs("usage: bench_methods SIDE ROUNDS [METHOD]\n", stderr), 2;
   const int side = std::atoi(argv[1]), rounds = std::atoi(argv[2]);
   const auto context = gl::Context::create();
   if (!context) return std::fprintf(stderr, "%s\n", context.error().text().c_str()), 3;
@@ -100,6 +101,7 @@ int main(int argc, char** argv) {
   const double vertices = static_cast<double>(side) * side;
   std::vector<Contestant> contestants;
   for (const scene::Solver& solver : settings()) {
+    if (argc == 4 && std::string_view(argv[3]) != scene::name(solver.method)) continue;
     auto simulation = sim::Simulation::create(seed_of(side, solver));
     if (!simulation) return std::fprintf(stderr, "%s\n", simulation.error().text().c_str()), 1;
     contestants.push_back({solver, steps_a_round(solver, vertices), std::move(*simulation), {}, 0, 0, {}});
