@@ -7,9 +7,9 @@
 #include "server/gl/context.h"
 #include "server/lab/measure/automatic.h"
 #include "server/lab/measure/choice.h"
+#include "server/model/size.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
-#include "server/sim/cost.h"
 #include "server/sim/motion_table.h"
 
 namespace clothlab::cli {
@@ -43,7 +43,7 @@ Result<scene::Scene> settle_method(scene::Scene scene, std::string& chosen) {
 }  // namespace
 
 gl::HelperThreads threads_for(const scene::Scene& scene) {
-  return sim::needs_no_helper_threads(scene) ? gl::HelperThreads::none : gl::HelperThreads::sessions;
+  return gl::needs_no_helper_threads(model::size_of(scene).vertices) ? gl::HelperThreads::none : gl::HelperThreads::sessions;
 }
 
 void add_gpu(CLI::App& command, std::optional<int>& gpu) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/base/result.h"
+#include "server/gl/software/software.h"
 
 namespace clothlab::gl {
 
@@ -24,31 +25,11 @@ struct Device {
   std::string problem;  ///< why it is not usable
 };
 
-/// True if the calling thread's current context is one of Mesa's software rasteriser.
-bool software_renderer();
-
-/// True if the calling thread's current context is one of software OpenGL without helper threads (see
-/// HelperThreads): a dispatch then costs a few microseconds besides its work, else several times that.
-bool computes_on_calling_thread();
-
 /// GL_RENDERER of the calling thread's current context.
 std::string renderer_name();
 
 /// Every EGL device in the driver's order; opens a context on each to ask its name.
 Result<std::vector<Device>> list_devices();
-
-/// Software OpenGL computes on helper threads, which all contexts of one EGL display share. They carry out
-/// one dispatch after another, however long, at the priority of the thread that made the display's first
-/// context. Mesa has four displays for its software device; each value names the contexts that share one.
-/// `none`, `none_too`: contexts compute on the thread that calls, one after another on each display, if the
-/// program began with `compute_without_helper_threads`. `lab`: see `helped` of Context::create.
-enum class HelperThreads { none, none_too, sessions, lab };
-
-/// From now on contexts of `none` and `none_too` compute on the thread that calls; those of the other
-/// displays on as many helper threads as the environment's LP_NUM_THREADS says, by default one for each core.
-/// Mesa reads that variable when it opens a display: so this opens the other displays, then sets it to 0.
-/// Must be called before the program's first context and its first thread. No effect where there is a GPU.
-void compute_without_helper_threads();
 
 /// A context that belongs to the thread that made it current. Its device is `gpu` if given; else the first
 /// usable device that is not software; else Mesa's software rasteriser.
@@ -66,8 +47,8 @@ class Context {
   Context& operator=(const Context&) = delete;
 
   const Device& device() const { return device_; }
-  /// True if the device was reset: its data are lost, and nothing of this context works any more. The context
-  /// must be current on the calling thread.
+  /// True from a reset of the device on: its data are lost, and nothing of this context works any more. The
+  /// context must be current on the calling thread.
   bool lost() const;
   /// Moves the context to the calling thread (it must be current on no other).
   Status make_current();
@@ -78,6 +59,7 @@ class Context {
   Device device_;
   void* display_ = nullptr;
   void* context_ = nullptr;
+  mutable bool lost_ = false;  ///< OpenGL tells of a reset until the device is back, and no longer
 };
 
 }  // namespace clothlab::gl

@@ -3,7 +3,6 @@
 #include <glad/gl.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -26,20 +25,11 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of a processor, which is the device where OpenGL is software: its name there does not tell it.
-std::string processor() {
-  std::ifstream file("/proc/cpuinfo");
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("model name")) return line;
-  return {};
-}
-
 /// All that a fact depends on, as a line of text.
 std::string description(const std::string& name) {
-  std::string text =
-      name + " of " + renderer_name() + ", " + reinterpret_cast<const char*>(glGetString(GL_VERSION));
-  if (software_renderer())
-    text += computes_on_calling_thread() ? ", one thread, " : ", helper threads, ", text += processor();
+  std::string text = name + ", least of several rounds, of " + renderer_name() + ", " +
+                     reinterpret_cast<const char*>(glGetString(GL_VERSION));
+  if (software_renderer()) text += ", " + what_computes();
   return text;
 }
 
@@ -108,16 +98,12 @@ TwoTimes time_in_turn(const std::function<void(int)>& one, const std::function<v
   for (const auto* work : {&one, &other}) time_of(*work, 1);  // compiles
   int times = 1;
   while (time_of(one, times) < enough && times < most_times) times *= 2;
-  std::array<double, rounds> of_one{}, of_other{};
-  for (std::size_t round = 0; round < rounds; ++round) {
-    of_one[round] = time_of(one, times) / times;
-    of_other[round] = time_of(other, times) / times;
+  TwoTimes least{time_of(one, times), time_of(other, times)};
+  for (int round = 1; round < rounds; ++round) {
+    least.one = std::min(least.one, time_of(one, times));
+    least.other = std::min(least.other, time_of(other, times));
   }
-  const auto median = [](std::array<double, rounds>& samples) {
-    std::nth_element(samples.begin(), samples.begin() + rounds / 2, samples.end());
-    return samples[rounds / 2];
-  };
-  return {median(of_one), median(of_other)};
+  return {least.one / times, least.other / times};
 }
 
 }  // namespace clothlab::gl

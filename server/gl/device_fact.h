@@ -12,8 +12,8 @@ namespace clothlab::gl {
 /// `measure` may ask for other facts. One thread measures at a time.
 double device_fact(const std::string& name, const std::function<double()>& measure);
 
-/// What two ways to do the same work take [s]: medians of several measurements of both in turn, so that what
-/// else the machine does slows both alike.
+/// What two ways to do the same work take [s]: the least of several measurements of both in turn. What else
+/// the machine does only ever adds to a time, and may last as long as all of them: a median would keep it.
 struct TwoTimes {
   double one = 0.0, other = 0.0;
 };

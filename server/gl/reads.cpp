@@ -47,6 +47,12 @@ double measure() {
   return times.other / times.one;
 }
 
+int at_most(GLint everywhere, GLenum limit) {
+  GLint allowed = 0;
+  glGetIntegerv(limit, &allowed);
+  return std::min(allowed, everywhere);
+}
+
 }  // namespace
 
 double storage_over_texture_reads() {
@@ -54,10 +60,13 @@ double storage_over_texture_reads() {
 }
 
 int most_storage_blocks() {
-  GLint allowed = 0;
-  glGetIntegerv(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS, &allowed);
+  const int allowed = at_most(16, GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS);
   const char* asked = std::getenv("CLOTHLAB_STORAGE_BLOCKS");
   return asked ? std::min(allowed, std::atoi(asked)) : allowed;
+}
+
+int most_textures() {
+  return at_most(32, GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS);
 }
 
 Reads fastest_reads() {

@@ -11,9 +11,12 @@ enum class Reads { textures, storage };
 /// instead.
 Reads fastest_reads();
 
-/// Storage blocks that a compute program may have: as many as the device allows, or CLOTHLAB_STORAGE_BLOCKS=N
-/// in the environment, if that is less, to play a device that allows fewer.
+/// Storage blocks that a compute program may have: 16, as NVIDIA allows no more, so that a program reads the
+/// same way on each device; fewer if the device allows fewer, or CLOTHLAB_STORAGE_BLOCKS=N in the
+/// environment, which plays such a device.
 int most_storage_blocks();
+/// Textures that a compute program may have: 32, or as many as the device allows, if that is less.
+int most_textures();
 
 /// Time of storage reads over that of texture reads, measured as shaders/reads.comp reads.
 double storage_over_texture_reads();

@@ -6,8 +6,9 @@
 
 #include "server/base/priority.h"
 #include "server/gl/context.h"
+#include "server/gl/software/software.h"
+#include "server/model/size.h"
 #include "server/session/fault.h"
-#include "server/sim/cost.h"
 #include "server/sim/list_memory.h"
 #include "server/sim/memory.h"
 
@@ -119,8 +120,8 @@ Result<LabWorker::Run> open_lab(std::optional<int> gpu, std::shared_ptr<MemoryBu
     sim::ListMemory::of_thread() = std::make_shared<sim::ListMemory>(budget);
     // With helper threads or without, whichever is faster for this scene, as sessions and the command line
     // compute; else the costs would be another's.
-    const Result<std::unique_ptr<gl::Context>> context =
-        gl::Context::create(gpu, gl::HelperThreads::lab, !sim::needs_no_helper_threads(document.scene));
+    const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(
+        gpu, gl::HelperThreads::lab, !gl::needs_no_helper_threads(model::size_of(document.scene).vertices));
     if (!context) return context.error();
     Result<lab::Outcome> outcome = lab::run(document, job, control);
     if ((*context)->lost() || session::fault_due(session::Fault::context_lost, session::fault_in_lab, 0))

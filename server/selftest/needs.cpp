@@ -94,6 +94,7 @@ std::vector<Check> ProgramWatch::limits() const {
     GLint allowed = 0;
     glGetIntegerv(limit.value, &allowed);
     if (limit.value == GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS) allowed = gl::most_storage_blocks();
+    if (limit.value == GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS) allowed = gl::most_textures();
     const bool passed = most.needed <= allowed;
     checks.push_back({std::string("limit: ") + limit.name, passed, most.needed, allowed, "",
                       std::to_string(most.needed) + " needed (" + most.program + "), " +

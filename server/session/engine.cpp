@@ -2,15 +2,18 @@
 
 #include <utility>
 
-#include "server/session/helper_threads.h"
+#include "server/sim/cost.h"
 
 namespace clothlab::session {
 
 Result<std::unique_ptr<Engine>> Engine::create(const scene::Scene& scene, Exchange& exchange,
                                                const Wanted& wanted) {
-  auto engine = std::make_unique<Engine>(ComputePlace::claim(scene));
-  const gl::HelperThreads threads = engine->place.threads();
-  make_helper_threads(wanted.gpu, threads);
+  auto engine = std::make_unique<Engine>();
+  auto threads = gl::HelperThreads::none;
+  if (gl::software_device(wanted.gpu)) {
+    threads = engine->place.emplace(gl::ComputePlace::claim(sim::expected_share(scene))).threads();
+    gl::make_helper_threads(wanted.gpu, threads);
+  }
   Result<std::unique_ptr<gl::Context>> context = gl::Context::create(wanted.gpu, threads);
   if (!context) return context.error();
   engine->context = std::move(*context);

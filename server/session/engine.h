@@ -1,5 +1,5 @@
 // The parts of a session that live on the GPU: a context, the simulation, the frame maker and timers. A scene
-// that a change makes small or large on software OpenGL moves to another engine (compute_place.h).
+// that a change makes small or large on software OpenGL moves to another engine (gl/software/software.h).
 #pragma once
 
 #include <memory>
@@ -7,8 +7,8 @@
 
 #include "server/base/memory_budget.h"
 #include "server/gl/context.h"
+#include "server/gl/software/software.h"
 #include "server/gl/stage_timer.h"
-#include "server/session/compute_place.h"
 #include "server/session/frame_maker.h"
 #include "server/session/gpu_backlog.h"
 #include "server/sim/simulation.h"
@@ -24,16 +24,13 @@ struct Engine {
   /// Makes the engine's context current on the calling thread. After an error no context is current.
   static Result<std::unique_ptr<Engine>> create(const scene::Scene& scene, Exchange& exchange,
                                                 const Wanted& wanted);
-  explicit Engine(ComputePlace there) : place(std::move(there)) {}
+  Engine() = default;
   /// Makes the engine's context current to free what is in it; afterwards no context is current.
   ~Engine();
 
-  /// True on software OpenGL; only there helper threads matter.
-  bool software() const { return context->device().software; }
-
-  MemoryBudget::Reservation memory{};  ///< of its scene; the last to be given back
-  ComputePlace place;
-  std::unique_ptr<gl::Context> context;  ///< before the members below, as they must be freed while it exists
+  MemoryBudget::Reservation memory{};     ///< of its scene; the last to be given back
+  std::optional<gl::ComputePlace> place;  ///< on software OpenGL
+  std::unique_ptr<gl::Context> context;   ///< before the members below, as they must be freed while it exists
   std::unique_ptr<sim::Simulation> simulation;
   std::unique_ptr<FrameMaker> frames;
   gl::StageTimer step_timer, diagnosis_timer;

@@ -12,7 +12,6 @@
 #include "server/model/mesh_file.h"
 #include "server/render/renderer.h"
 #include "server/session/fault.h"
-#include "server/session/helper_threads.h"
 #include "server/stream/recording.h"
 
 namespace clothlab::session {
@@ -50,7 +49,7 @@ Result<std::string> film_of(std::string_view recording, const film::Format& form
 Result<std::string> picture(std::optional<int> gpu, const Moment& moment, const model::Model& model,
                             const Export& what) {
   // With the lab, which can wait: a picture on a display of small sessions would hold these up for seconds.
-  make_helper_threads(gpu, gl::HelperThreads::lab);
+  gl::make_helper_threads(gpu, gl::HelperThreads::lab);
   const Result<std::unique_ptr<gl::Context>> context = gl::Context::create(gpu, gl::HelperThreads::lab);
   if (!context) return context.error();
   const Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create();
@@ -99,7 +98,7 @@ std::optional<Exported> Exporter::take() {
 
 void Exporter::run() {
   // Lower priority than any session, but higher than the lab, as a user waits for the file. What software
-  // OpenGL computes of a picture has the priority of its threads (helper_threads.h).
+  // OpenGL computes of a picture has the priority of its threads (gl/software/software.h).
   lower_priority(10);
   while (true) {
     Task task;

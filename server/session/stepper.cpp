@@ -8,7 +8,6 @@
 #include "server/model/size.h"
 #include "server/model/thickness.h"
 #include "server/scene/method.h"
-#include "server/session/display_turn.h"
 #include "server/session/fault.h"
 #include "server/sim/memory.h"
 #include "server/sim/slipping.h"
@@ -106,8 +105,8 @@ Clock::time_point Stepper::turn() {
   {
     // Not on a GPU, whose driver shares it out; nor in the first step after a change, in which software
     // OpenGL may compile kernels for seconds.
-    std::optional<DisplayTurn> turn;
-    if (engine_->software() && compiled_) turn.emplace(engine_->place.threads());
+    std::optional<gl::DisplayTurn> turn;
+    if (engine_->place && compiled_) turn.emplace(engine_->place->threads());
     frames().make_urgent(simulation(), now);
     advance(now, turn ? turn->others() : 0);
     frames().make_urgent(simulation(), now);

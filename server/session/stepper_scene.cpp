@@ -8,6 +8,7 @@
 #include "server/scene/vertex_numbers.h"
 #include "server/session/change_name.h"
 #include "server/session/stepper.h"
+#include "server/sim/cost.h"
 
 namespace clothlab::session {
 
@@ -225,7 +226,7 @@ Result<sim::ChangeDepth> Stepper::change_engine(const scene::Scene& scene) {
     begin_timeline();
     return depth;
   }
-  if (engine_->place.stays(scene) || !engine_->software()) return change_here(scene);
+  if (!engine_->place || engine_->place->stays(sim::expected_share(scene))) return change_here(scene);
   const Result<sim::ChangeDepth> depth = move_to(scene);
   if (depth && *depth != sim::ChangeDepth::cloth) begin_timeline();  // its states were on the other engine
   return depth;

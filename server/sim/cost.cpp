@@ -25,9 +25,6 @@ constexpr double strain_limit_cost = 20 * gather;  ///< the strain limit's sweep
 constexpr double pair_cost = 3e-9;                 ///< one other vertex that a neighbour search looks at
 constexpr double searches_per_step = 0.05;  ///< number of neighbour searches per step while a cloth moves
 
-/// Where one thread and two are even, within the noise of a machine of two cores.
-constexpr double most_vertices_of_one_thread = 32 * 32;
-
 /// The cost of contact of points for each vertex [s]. On a grid that starts flat the number of vertices that
 /// a neighbour search looks at (crowding.h) follows from the spacing; any other cloth is taken to lie in a
 /// heap, where it looks at all.
@@ -63,11 +60,8 @@ double expected_step_seconds(const scene::Scene& scene) {
   return total;
 }
 
-bool needs_no_helper_threads(const scene::Scene& scene) {
-  double vertices = 0.0;
-  for (const scene::Cloth& cloth : scene.cloths)
-    vertices += static_cast<double>(scene::vertex_count(cloth.mesh));
-  return vertices <= most_vertices_of_one_thread;
+double expected_share(const scene::Scene& scene) {
+  return expected_step_seconds(scene) / scene.solver.dt;
 }
 
 }  // namespace clothlab::sim

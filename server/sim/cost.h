@@ -9,8 +9,7 @@ namespace clothlab::sim {
 /// enough to tell if such a machine can step the scene in real time.
 double expected_step_seconds(const scene::Scene& scene);
 
-/// True if software OpenGL steps the scene faster on the thread that calls than on helper threads, whose
-/// start and end take longer than they save.
-bool needs_no_helper_threads(const scene::Scene& scene);
+/// The share of such a core's time that the scene takes in real time.
+double expected_share(const scene::Scene& scene);
 
 }  // namespace clothlab::sim

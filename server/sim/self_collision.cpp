@@ -63,7 +63,7 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
   }
   const NeighbourControl nothing;
   made.control_ = gl::Buffer(sizeof(NeighbourControl), &nothing);
-  made.asks_ = gl::software_renderer();
+  made.answers_ = gl::AnswersAtOnce::of_device();
   made.counters_ring_ = gl::ReadbackRing(sizeof(NeighbourControl), 1);
   made.heads_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
   made.heads_.buffer.fill(chain_end);  // later each search empties them at its end
@@ -192,13 +192,9 @@ Work SelfCollision::update_lists() {
   glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT);
 }
 
-/// Whether lists may have to be rebuilt. Software OpenGL has carried out a dispatch when the call returns,
-/// and is asked: that costs less than three dispatches that do nothing. A GPU would have to be waited for.
+/// Whether lists may have to be rebuilt.
 bool SelfCollision::search_is_due() const {
-  if (!asks_) return true;
-  std::uint32_t groups = 0;
-  control_.download(&groups, sizeof groups, offsetof(NeighbourControl, rebuild));
-  return groups > 0;
+  return !answers_.none(control_, offsetof(NeighbourControl, rebuild));
 }
 
 Work SelfCollision::search() {

@@ -7,6 +7,7 @@
 #include "server/base/result.h"
 #include "server/gl/buffer.h"
 #include "server/gl/program.h"
+#include "server/gl/software/software.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
 #include "server/sim/carried.h"
@@ -85,7 +86,7 @@ class SelfCollision {
   std::uint64_t updates_ = 0;  ///< calls of update_lists since `invalidate`
   bool searched_ = false;      ///< since `invalidate`
   bool updated_ = false;       ///< for the step under way
-  bool asks_ = false;          ///< the host reads whether a search is due
+  gl::AnswersAtOnce answers_;  ///< whether a search is due
   std::uint32_t longest_ = 0;  ///< Counters::longest as last read back
   float skin_ = 0;             ///< [m]
   float reach_ = 0;            ///< contact distance + skin: how far the lists look [m]

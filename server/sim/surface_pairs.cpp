@@ -30,7 +30,7 @@ std::uint32_t most_entries() {
 
 Result<SurfacePairs> SurfacePairs::create(const model::Model& model, const SurfaceTriangles& surface) {
   SurfacePairs made;
-  made.asks_ = gl::software_renderer();
+  made.answers_ = gl::AnswersAtOnce::of_device();
   made.vertex_count_ = model.vertex_count() + static_cast<std::uint32_t>(surface.body_places.size());
   made.triangle_count_ = static_cast<std::uint32_t>(surface.triangles.size());
   const gl::Defines defines{{"GROUP_SIZE", std::to_string(group_size)},
@@ -236,7 +236,7 @@ void SurfacePairs::carry(Carrier& carrier) {
 }
 
 bool SurfacePairs::none(std::size_t groups) const {
-  return asks_ && none_for_sure(groups);
+  return answers_.none(control_, groups);
 }
 
 bool SurfacePairs::none_for_sure(std::size_t groups) const {
@@ -301,7 +301,7 @@ Work SurfacePairs::update(const StateBuffers& state) {
   blocks_.check(state.position(), expected_);
   const bool searched = search(state);
   bool look = updates_++ % updates_between_size_looks == 0 || waits();
-  if (searched && asks_) look = look || !none(offsetof(SurfaceControl, overflow));
+  if (searched && answers_) look = look || !none(offsetof(SurfaceControl, overflow));
   while (look && make_room(false)) {
     co_await may_stop;
     search(state);
@@ -311,7 +311,7 @@ Work SurfacePairs::update(const StateBuffers& state) {
 bool SurfacePairs::update_within_step(const StateBuffers& state) {
   blocks_.check_again(state.position(), expected_, offsetof(SurfaceControl, check));
   const bool searched = search(state);
-  const bool look = driven_ || (searched && asks_ && !none(offsetof(SurfaceControl, overflow)));
+  const bool look = driven_ || (searched && answers_ && !none(offsetof(SurfaceControl, overflow)));
   while (look && make_room(true)) search(state);
   return !no_room_;
 }
@@ -321,7 +321,7 @@ bool SurfacePairs::update_for(const gl::TextureBuffer& from, const gl::TextureBu
   bind();
   blocks_.check_later(to, expected_, dt);
   const bool searched = search(from, velocity);
-  const bool look = searched && (driven_ || !asks_ || !none(offsetof(SurfaceControl, overflow)));
+  const bool look = searched && (driven_ || !answers_ || !none(offsetof(SurfaceControl, overflow)));
   while (look && make_room(true)) search(from, velocity);
   std::uint32_t overflow = 0;
   control_.download(&overflow, sizeof overflow, offsetof(SurfaceControl, overflow));
@@ -348,7 +348,7 @@ bool SurfacePairs::make_room(bool within_step) {
   if (!sizes_ring_.empty()) take();
   glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   sizes_ring_.push(control_, sizeof control);
-  if (updates_ <= 1 || waits() || asks_) take();
+  if (updates_ <= 1 || waits() || answers_) take();
   bool longer = false;
   const auto wanted = [&](std::uint32_t capacity, std::uint32_t found) {
     const bool full = 4 * std::uint64_t{found} > 3 * std::uint64_t{capacity} && capacity < most_;

@@ -12,6 +12,7 @@
 #include "server/base/result.h"
 #include "server/gl/buffer.h"
 #include "server/gl/program.h"
+#include "server/gl/software/software.h"
 #include "server/model/model.h"
 #include "server/scene/scene.h"
 #include "server/sim/carried.h"
@@ -78,8 +79,7 @@ class SurfacePairs {
   void set_limits(const gl::Program& program) const;
   const gl::Buffer& control() const { return control_; }
   /// True if an indirect dispatch of the groups at this offset in the control block would do nothing.
-  /// Software OpenGL has carried out a dispatch when the call returns, and is asked: that costs less than a
-  /// dispatch that does nothing. A GPU would have to be waited for: then false.
+  /// False on a GPU, which would have to be waited for.
   bool none(std::size_t groups) const;
   /// The same, waiting for a GPU.
   bool none_for_sure(std::size_t groups) const;
@@ -129,7 +129,7 @@ class SurfacePairs {
   bool no_memory_ = false;             ///< the last time that a list had to be longer
   bool no_room_ = false;  ///< the last look found that no search can do with lists of `most_` entries
   bool driven_ = false, in_pieces_ = false, searched_ = false;
-  bool asks_ = false;          ///< none(groups) asks
+  gl::AnswersAtOnce answers_;  ///< none(groups)
   std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`
   gl::Program triangle_boxes_program_, boxes_program_, leaf_pairs_program_, bundle_pairs_program_,
       triangle_pairs_program_, neighbours_, candidates_, pairs_program_, rest_, finish_;

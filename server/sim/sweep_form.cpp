@@ -11,8 +11,8 @@
 #include <string>
 #include <string_view>
 
-#include "server/gl/context.h"
 #include "server/gl/device_fact.h"
+#include "server/gl/software/software.h"
 #include "server/sim/simulation.h"
 
 namespace clothlab::sim {
@@ -99,12 +99,9 @@ std::uint32_t lanes_of_one_group(const SweptCloth& cloth) {
   if (cloth.vertices > most_vertices(cloth.self_collision)) return 0;
   GLint most_lanes = 0;
   glGetIntegerv(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS, &most_lanes);
-  std::uint32_t lanes = static_cast<std::uint32_t>(most_lanes);
-  if (gl::software_renderer()) {
-    for (lanes = 8; lanes <= 128 && cloth.turns(lanes) >= 50000;)
-      lanes *= 2;  // how Mesa counts is not documented
-    if (lanes > 128) return 0;
-  }
+  const std::uint32_t lanes =
+      gl::software_renderer() ? gl::fewest_lanes(cloth.turns) : static_cast<std::uint32_t>(most_lanes);
+  if (lanes == 0) return 0;
   const std::optional<Form> asked = asked_form();
   const bool one_group = asked ? *asked == Form::one_group
                                : cloth.vertices <= vertices_a_dispatch(cloth.by_vertex) * cloth.dispatches;

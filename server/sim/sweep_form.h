@@ -20,11 +20,9 @@ struct SweptCloth {
 /// Number of threads in the one work group that does a whole step; 0 if a step must take many dispatches
 /// instead: because they are faster on the device of the current context, because a work group has too little
 /// shared memory, or because a thread would have too many turns of loops. A GPU gets as many threads as a
-/// work group can have. Software OpenGL runs 8 at a time, and each barrier costs more with more threads; but
-/// it silently ends every loop of a kernel after 65535 turns in all (gallivm's
-/// LP_MAX_TGSI_LOOP_ITERATIONS). So it gets the fewest threads, 8 to 128, with which the turns in one thread
-/// stay well below that. CLOTHLAB_SWEEPS=dispatches or one_group in the environment decides which form is
-/// faster, to compare the two.
+/// work group can have, software OpenGL the fewest that will do (gl::fewest_lanes).
+/// CLOTHLAB_SWEEPS=dispatches or one_group in the environment decides which form is faster, to compare the
+/// two.
 std::uint32_t lanes_of_one_group(const SweptCloth& cloth);
 
 /// The number of vertices for which the one work group has shared memory: a power of two, so that few kernels

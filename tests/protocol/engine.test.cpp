@@ -14,14 +14,13 @@
 #include <thread>
 #include <vector>
 
-#include "server/session/display_turn.h"
 #include "server/session/stepper.h"
 #include "server/sim/cost.h"
 #include "tests/scenes.h"
 
 using namespace clothlab;
+using gl::ComputePlace;
 using gl::HelperThreads;
-using session::ComputePlace;
 
 namespace {
 
@@ -42,6 +41,10 @@ scene::Scene large_seed(int side) {
   return scene;
 }
 
+ComputePlace claim(const scene::Scene& scene) {
+  return ComputePlace::claim(sim::expected_share(scene));
+}
+
 session::Command patch(scene::json what) {
   return {{1, scene::json(1)}, session::PatchScene{std::move(what), {}}};
 }
@@ -49,24 +52,24 @@ session::Command patch(scene::json what) {
 }  // namespace
 
 TEST_CASE("scenes that one core steps in real time are spread over two displays without helper threads") {
-  const ComputePlace first = ComputePlace::claim(test::seed());
+  const ComputePlace first = claim(test::seed());
   {
-    const ComputePlace second = ComputePlace::claim(test::seed());
+    const ComputePlace second = claim(test::seed());
     CHECK(first.threads() != HelperThreads::sessions);
     CHECK(second.threads() != HelperThreads::sessions);
     CHECK(first.threads() != second.threads());
   }
-  const ComputePlace third = ComputePlace::claim(test::seed());  // the second has given up its claim
+  const ComputePlace third = claim(test::seed());  // the second has given up its claim
   CHECK(third.threads() != first.threads());
-  ComputePlace moved = ComputePlace::claim(large_seed(256));
-  moved = ComputePlace::claim(large_seed(40));  // as much as three of the seed
-  const ComputePlace fifth = ComputePlace::claim(test::seed()), sixth = ComputePlace::claim(test::seed());
+  ComputePlace moved = claim(large_seed(256));
+  moved = claim(large_seed(40));  // as much as three of the seed
+  const ComputePlace fifth = claim(test::seed()), sixth = claim(test::seed());
   CHECK(fifth.threads() != moved.threads());
   CHECK(sixth.threads() != moved.threads());
 }
 
 TEST_CASE("sessions that share a display compute in turns, and one that takes long is not waited for") {
-  using Turn = session::DisplayTurn;
+  using Turn = gl::DisplayTurn;
   auto first = std::make_unique<Turn>(HelperThreads::none);
   CHECK(first->others() == 0);
   { const Turn elsewhere(HelperThreads::none_too); }  // does not wait
@@ -105,7 +108,7 @@ TEST_CASE("sessions that share a display compute in turns, and one that takes lo
 
 TEST_CASE("a scene is heavy if one core could not step it in real time, and stays so near the boundary") {
   const auto heavy = [](const scene::Scene& scene) {
-    return ComputePlace::claim(scene).threads() == HelperThreads::sessions;
+    return claim(scene).threads() == HelperThreads::sessions;
   };
   CHECK_FALSE(heavy(test::seed()));
   CHECK(heavy(large_seed(256)));
@@ -119,18 +122,18 @@ TEST_CASE("a scene is heavy if one core could not step it in real time, and stay
 
   scene = test::seed();
   scene.solver.dt = sim::expected_step_seconds(scene) / 0.6;
-  ComputePlace light = ComputePlace::claim(test::seed()), helped = ComputePlace::claim(large_seed(256));
-  CHECK(light.stays(scene));
-  CHECK(helped.stays(scene));
-  CHECK_FALSE(light.stays(large_seed(256)));
-  CHECK_FALSE(helped.stays(test::seed()));
+  ComputePlace light = claim(test::seed()), helped = claim(large_seed(256));
+  CHECK(light.stays(sim::expected_share(scene)));
+  CHECK(helped.stays(sim::expected_share(scene)));
+  CHECK_FALSE(light.stays(sim::expected_share(large_seed(256))));
+  CHECK_FALSE(helped.stays(sim::expected_share(test::seed())));
 }
 
 TEST_CASE("heavy scenes have helper threads of their own, which give way") {
   session::Exchange exchange{[] {}};
   const auto light = session::Engine::create(test::seed(), exchange, {});
   REQUIRE(light);
-  if (!(*light)->software()) return;  // a GPU has none
+  if (!(*light)->place) return;  // a GPU has none
   const std::map<int, int> before = threads();
   const auto heavy = session::Engine::create(large_seed(256), exchange, {});
   REQUIRE(heavy);

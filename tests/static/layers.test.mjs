@@ -39,6 +39,30 @@ test("no file of server/session includes anything of the network", () => {
   );
 });
 
+/// A file of ours outside server/gl/software that goes in by another way than its door.
+const door = "server/gl/software/software.h";
+const pastDoor = (file, text) =>
+  file.startsWith("server/gl/software/") ||
+  file.startsWith("server/gl/context.") ||
+  file.startsWith("server/gl/devices.")
+    ? []
+    : [
+        ...[...text.matchAll(/^\s*#\s*include\s+"(server\/gl\/software\/[^"]+)"/gm)]
+          .map(([, path]) => path)
+          .filter((path) => path !== door),
+        ...(text.replace(/\/\/.*$/gm, "").match(/\b(?:LP_NUM_THREADS|llvmpipe|softpipe)\b/g) ?? []),
+      ];
+
+test("what is only for software OpenGL is in server/gl/software, behind one header", () => {
+  assert.deepEqual(
+    sources.flatMap((file) => pastDoor(file, read(file)).map((found) => `${file}: ${found}`)),
+    [],
+  );
+  const through = '#include "server/gl/software/displays.h"\nsetenv("LP_NUM_THREADS", "0", 1);  // llvmpipe\n';
+  assert.deepEqual(pastDoor("server/sim/a.cpp", through), ["server/gl/software/displays.h", "LP_NUM_THREADS"]);
+  assert.deepEqual(pastDoor("server/sim/a.cpp", `#include "${door}"\n`), []);
+});
+
 test("what the lab measures does not depend on how it is drawn or exported", () => {
   const above = /^\s*#\s*include\s+"server\/lab\/(?!measure\/)/m;
   assert.deepEqual(

@@ -1,12 +1,12 @@
-#include "server/session/display_turn.h"
-
 #include <array>
 #include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
 
-namespace clothlab::session {
+#include "server/gl/software/displays.h"
+
+namespace clothlab::gl {
 
 namespace {
 
@@ -44,14 +44,15 @@ struct Display {
   }
 };
 
-Display& display_of(gl::HelperThreads threads) {
+Display& display_of(HelperThreads threads) {
   static std::array<Display, 4> displays;
   return displays[static_cast<std::size_t>(threads)];
 }
 
 }  // namespace
 
-DisplayTurn::DisplayTurn(gl::HelperThreads threads) : display_(threads) {
+DisplayTurn::DisplayTurn(HelperThreads threads) : display_(threads) {
+  software::check_software("a turn to compute");
   Display& display = display_of(display_);
   std::unique_lock lock(display.mutex);
   if (!display.holder) {
@@ -73,10 +74,10 @@ DisplayTurn::~DisplayTurn() {
   if (display.holder == this) display.next();
 }
 
-std::size_t DisplayTurn::waiting(gl::HelperThreads threads) {
+std::size_t DisplayTurn::waiting(HelperThreads threads) {
   Display& display = display_of(threads);
   const std::lock_guard lock(display.mutex);
   return display.waiting.size();
 }
 
-}  // namespace clothlab::session
+}  // namespace clothlab::gl

@@ -1,17 +1,13 @@
-#include "server/session/compute_place.h"
-
 #include <algorithm>
 #include <array>
 #include <mutex>
 #include <utility>
 
-#include "server/sim/cost.h"
+#include "server/gl/software/displays.h"
 
-namespace clothlab::session {
+namespace clothlab::gl {
 
 namespace {
-
-using gl::HelperThreads;
 
 /// The part of one core's time that a scene in real time takes, by the estimate, above which it moves to the
 /// helper threads and below which it comes back. Estimates are right within a factor of about two.
@@ -20,7 +16,7 @@ constexpr double to_leave = 0.8, to_return = 0.4;
 constexpr std::array without_helpers{HelperThreads::none, HelperThreads::none_too};
 
 /// The parts of a core's time that the scenes of each display take together, in the whole process.
-std::mutex mutex;
+std::mutex claims;
 std::array<double, 4> claimed{};  // for each HelperThreads
 
 double& claimed_on(HelperThreads threads) {
@@ -29,10 +25,6 @@ double& claimed_on(HelperThreads threads) {
 
 void add(HelperThreads threads, double share) {
   claimed_on(threads) = std::max(0.0, claimed_on(threads) + share);
-}
-
-double share_of(const scene::Scene& scene) {
-  return sim::expected_step_seconds(scene) / scene.solver.dt;
 }
 
 HelperThreads best_for(double share) {
@@ -57,23 +49,22 @@ ComputePlace& ComputePlace::operator=(ComputePlace&& other) noexcept {
 }
 
 ComputePlace::~ComputePlace() {
-  const std::lock_guard lock(mutex);
+  const std::lock_guard lock(claims);
   add(threads_, -share_);
 }
 
-ComputePlace ComputePlace::claim(const scene::Scene& scene) {
-  const std::lock_guard lock(mutex);
-  const double share = share_of(scene);
+ComputePlace ComputePlace::claim(double share) {
+  software::check_software("a place to compute");
+  const std::lock_guard lock(claims);
   return {best_for(share), share};
 }
 
-bool ComputePlace::stays(const scene::Scene& scene) {
-  const std::lock_guard lock(mutex);
-  const double share = share_of(scene);
+bool ComputePlace::stays(double share) {
+  const std::lock_guard lock(claims);
   if (threads_ == HelperThreads::sessions ? share <= to_return : share > to_leave) return false;
   add(threads_, share - share_);
   share_ = share;
   return true;
 }
 
-}  // namespace clothlab::session
+}  // namespace clothlab::gl
