@@ -10,6 +10,7 @@
 #include "server/bus/bus.h"
 #include "server/cli/commands.h"
 #include "server/gl/context.h"
+#include "server/gl/gpus.h"
 #include "server/gl/reads.h"
 #include "server/scene/method.h"
 #include "server/sim/sweep_form.h"
@@ -71,6 +72,7 @@ int info() {
   std::cout << "devices" << (context ? " (* is used unless --gpu N says otherwise)\n" : "\n");
   for (const gl::Device& device : *devices)
     print_device(device, context && (*context)->device().index == device.index);
+  for (const std::string& gpu : gl::gpus_without_opengl(*devices)) note(gpu);
   if (!context) return fail(context.error(), exit_no_opengl);
   print_measured();
   return exit_done;

@@ -1,7 +1,9 @@
 // `clothlab serve`: a scene live in the browser, and for scripts over its WebSocket.
 #include <algorithm>
 #include <filesystem>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "server/base/files.h"
 #include "server/base/lock.h"
@@ -9,6 +11,7 @@
 #include "server/cli/commands.h"
 #include "server/cli/listening.h"
 #include "server/gl/context.h"
+#include "server/gl/gpus.h"
 #include "server/model/model.h"
 #include "server/model/size.h"
 #include "server/net/server.h"
@@ -68,6 +71,15 @@ Result<Lock> claim_state_folder(const net::Options& options) {
   return std::move(*lock);
 }
 
+/// Names GPUs that are in the machine and that OpenGL does not offer: else the server is slow without a word
+/// why.
+void warn_of_gpus() {
+  if (gl::gpus_without_opengl({}).empty()) return;  // no GPU: the devices need not be opened
+  const Result<std::vector<gl::Device>> devices = gl::list_devices();
+  for (const std::string& gpu : gl::gpus_without_opengl(devices ? *devices : std::vector<gl::Device>()))
+    log(LogLevel::warning, "gpu_without_opengl", {{"why", gpu}});
+}
+
 int serve(ServeArguments& arguments) {
   net::Options& options = arguments.listening.options;
   if (const Status checked = check(arguments.listening.options); !checked)
@@ -103,6 +115,7 @@ int serve(ServeArguments& arguments) {
   options.usual_scene = !arguments.scene_named && arguments.scene.set.empty();
   if (arguments.gpu >= 0) options.gpu = arguments.gpu;
   gl::compute_without_helper_threads();
+  warn_of_gpus();
   return listen_and_serve(std::move(arguments.listening));
 }
 

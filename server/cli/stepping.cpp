@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "server/base/text.h"
 #include "server/gl/context.h"
@@ -10,6 +11,7 @@
 #include "server/model/size.h"
 #include "server/model/stability.h"
 #include "server/scene/method.h"
+#include "server/session/fault.h"
 #include "server/sim/motion_table.h"
 
 namespace clothlab::cli {
@@ -43,7 +45,8 @@ Result<scene::Scene> settle_method(scene::Scene scene, std::string& chosen) {
 }  // namespace
 
 gl::HelperThreads threads_for(const scene::Scene& scene) {
-  return gl::needs_no_helper_threads(model::size_of(scene).vertices) ? gl::HelperThreads::none : gl::HelperThreads::sessions;
+  return gl::needs_no_helper_threads(model::size_of(scene).vertices) ? gl::HelperThreads::none
+                                                                     : gl::HelperThreads::sessions;
 }
 
 void add_gpu(CLI::App& command, std::optional<int>& gpu) {
@@ -117,6 +120,12 @@ Result<Progress> advance(const Prepared& prepared, std::uint64_t steps, std::uin
       progress.diverged = run.judge_now() == sim::GuardedRun::Verdict::blown_up;
     else
       run.look();  // whoever has the run stop here changes nothing of what is said of it
+    if (prepared.context->lost() ||
+        session::fault_due(session::Fault::context_lost, session::fault_in_run, progress.steps))
+      return Error{"OpenGL",
+                   "the device was reset at step " + std::to_string(progress.steps) +
+                       ", and all that was on it is lost",
+                   "start again; if it happens again, see the driver's log"};
     if (progress.diverged) {
       progress.diverged_by = simulation.time();
       progress.setback = run.go_back();

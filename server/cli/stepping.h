@@ -49,7 +49,7 @@ struct Progress {
 using AtStop = std::function<Status(const sim::Diagnostics&)>;
 
 /// Steps `steps` times. Calls `at_stop` at the start, after every `every` steps, and at the end. If the
-/// simulation blows up, restores its last good state and returns.
+/// simulation blows up, restores its last good state and returns. Error: the stop's, or the device was reset.
 Result<Progress> advance(const Prepared& prepared, std::uint64_t steps, std::uint64_t every,
                          const AtStop& at_stop);
 

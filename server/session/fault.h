@@ -14,9 +14,9 @@ enum class Fault {
   context_lost   ///< "context-lost": the OpenGL context is reset
 };
 
-/// The values of SESSION for a fault in the lab or in the exporter: names that no session can have. STEPS is
-/// then a job's number, or 0.
-inline constexpr const char *fault_in_lab = "/lab", *fault_in_exporter = "/export";
+/// The values of SESSION for a fault in the lab, in the exporter or in a command that steps a scene: names
+/// that no session can have. STEPS is a job's number, or 0, of the first two.
+inline constexpr const char *fault_in_lab = "/lab", *fault_in_exporter = "/export", *fault_in_run = "/run";
 
 /// True once: when kind, session and steps are those that the environment asks for.
 bool fault_due(Fault fault, const std::string& session, std::uint64_t steps);

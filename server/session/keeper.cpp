@@ -87,6 +87,7 @@ void Keeper::finish(Stepper& stepper) {
 void Keeper::save(Stepper& stepper) {
   saved_version_ = stepper.version();
   auto saved = std::make_shared<const Saved>(stepper.saved());
+  if (stepper.lost()) return;  // what has been read may be anything
   exchange_.store_saved(saved);
   if (!file_) return;
   const clothlab::Status written = write(*saved);
