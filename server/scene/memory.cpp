@@ -23,9 +23,10 @@ std::size_t outside(const std::vector<T>& list) {
 }
 
 std::size_t outside(const TriangleMesh& mesh) {
-  std::size_t sum =
-      outside(mesh.vertices) + outside(mesh.triangles) + outside(mesh.pattern) + outside(mesh.vertex_of);
+  std::size_t sum = outside(mesh.vertices) + outside(mesh.triangles) + outside(mesh.pattern) +
+                    outside(mesh.vertex_of) + outside(mesh.runs);
   for (const std::string& note : mesh.notes) sum += sizeof note + outside(note);
+  for (const NamedRun& run : mesh.runs) sum += sizeof run + outside(run.name) + outside(run.vertices);
   return sum;
 }
 

@@ -148,17 +148,19 @@ TriangleMesh read_body_mesh(const Reader& mesh) {
 }  // namespace
 
 Mesh read_mesh(const Reader& mesh, const Assets* assets) {
-  mesh.object({"grid", "vertices", "triangles", "file", "obj", "node", "mend", "pattern", "pattern_scale"});
+  mesh.object(
+      {"grid", "panel", "vertices", "triangles", "file", "obj", "node", "mend", "pattern", "pattern_scale"});
   const bool file = names_file(mesh);
   for (const char* key : {"pattern", "pattern_scale", "node", "mend"})
     if (mesh.has(key) && !file) mesh.fail("\"" + std::string(key) + "\" only beside \"file\"");
   if (mesh.has("triangles")) {
-    if (mesh.has("grid") || file)
-      mesh.fail("either \"grid\", or \"file\", or \"vertices\" and \"triangles\"");
+    if (mesh.has("grid") || mesh.has("panel") || file)
+      mesh.fail("either \"grid\", or \"panel\", or \"file\", or \"vertices\" and \"triangles\"");
     return read_own_mesh(mesh);
   }
-  const std::string kind = mesh.exactly_one({"grid", "vertices", "file", "obj"});
+  const std::string kind = mesh.exactly_one({"grid", "panel", "vertices", "file", "obj"});
   if (kind == "vertices") return read_own_mesh(mesh);
+  if (kind == "panel") return read_panel(mesh.member("panel"));
   return kind == "grid" ? read_grid(mesh.member("grid")) : Mesh(read_named_mesh(mesh, assets));
 }
 

@@ -92,6 +92,19 @@ std::string Reader::exactly_one(const Words& alternatives) const {
   return chosen;
 }
 
+Words Reader::keys(std::size_t maximum) const {
+  Words names;
+  if (!value_ || !value_->is_object()) {
+    fail("an object");
+    return names;
+  }
+  if (value_->size() > maximum)
+    fail(std::to_string(value_->size()) + " keys", "at most " + std::to_string(maximum));
+  else
+    for (auto item = value_->begin(); item != value_->end(); ++item) names.push_back(item.key());
+  return names;
+}
+
 bool Reader::has(const std::string& key) const {
   return value_ && value_->is_object() && value_->contains(key);
 }

@@ -29,6 +29,8 @@ class Reader {
   /// The key of `alternatives` that the object has; an error unless it has exactly one of them.
   std::string exactly_one(const Words& alternatives) const;
   bool has(const std::string& key) const;
+  /// The keys of an object that has any names as keys, up to `maximum`; an error if it is none, or has more.
+  Words keys(std::size_t maximum) const;
   /// The member `key`. If it is absent, `fallback` is written into the document; without a fallback reading
   /// the member is an error.
   Reader member(const std::string& key, const std::optional<json>& fallback = std::nullopt) const;

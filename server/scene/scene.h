@@ -29,7 +29,14 @@ struct Grid {
   bool operator==(const Grid&) const = default;
 };
 
-/// A mesh given in the document itself, or read from a file that the document names.
+/// A run of a panel's outline: its vertices in order.
+struct NamedRun {
+  std::string name;
+  std::vector<std::uint32_t> vertices;
+  bool operator==(const NamedRun&) const = default;
+};
+
+/// A mesh given in the document itself, made of a panel there, or read from a file that the document names.
 struct TriangleMesh {
   std::vector<dvec3> vertices;                          ///< [vertex_count] [m]
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< [triangle_count], counter-clockwise
@@ -41,6 +48,7 @@ struct TriangleMesh {
   /// the vertices of the file. Empty: every vertex has its own number.
   std::vector<std::uint32_t> vertex_of{};
   std::vector<std::string> notes{};  ///< what a person should know of it, in sentences (mesh::Mesh::notes)
+  std::vector<NamedRun> runs{};      ///< of a panel
   bool operator==(const TriangleMesh&) const = default;
 };
 

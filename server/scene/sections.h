@@ -33,6 +33,8 @@ Motion read_motion(const Reader& motion);
 /// Reads the keys into a scene that is else complete.
 void read_keys(const Reader& keys, Scene& scene);
 
+/// The mesh of a panel.
+TriangleMesh read_panel(const Reader& panel);
 /// The mesh of a cloth.
 Mesh read_mesh(const Reader& mesh, const Assets* assets);
 Transform read_transform(const Reader& transform);

@@ -25,6 +25,8 @@ const crossFieldRules = {
   "a key's times rise": /^\/keys\/\d+\/at\/\d+\/0: .*times rise/,
   "a key's values are of the range of what it is of": /^\/keys\/\d+\/at\/\d+\/1(\/\d)?: /,
   "a pin lets go at once": /^\/keys\/\d+\/ease: .*between true and false/,
+  "a panel's outline and holes do not meet, and its vertices are not too many":
+    /\/mesh\/panel\/(outline\/\d+|holes\/\d+\/\d+|edge|edges\/[^:]*): /,
   "names are unique": /a name that no earlier one has/,
   "all cloths together are not too large": /vertices so far/,
   "a mesh's file is there and is one": /\/mesh\/(obj|file): /,
@@ -98,6 +100,28 @@ const whole = {
       pins: [{ at: "vertex:2" }],
       weights: [{ at: "vertex:1", mass: 1 }],
       start: { scale: [1, 0, -1] },
+    },
+    {
+      name: "piece",
+      mesh: {
+        panel: {
+          outline: [
+            [0, 0],
+            [0.4, 0],
+            [0.4, 0.4],
+            [0, 0.4],
+          ],
+          holes: [
+            [
+              [0.1, 0.1],
+              [0.2, 0.1],
+              [0.2, 0.2],
+            ],
+          ],
+          edge: 0.1,
+          edges: { left: [3, 0], hem: [0, 1] },
+        },
+      },
     },
     {
       mesh: { file: "leaf.obj", pattern: "uv", pattern_scale: 2, node: null, mend: true },

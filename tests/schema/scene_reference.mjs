@@ -18,6 +18,7 @@ const tables = [
   ["`keys[]`", ["$defs", "key"]],
   ["A cloth: `cloths[]`", ["$defs", "cloth"]],
   ["`mesh: {grid}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 0, "properties", "grid"]],
+  ["`mesh: {panel}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 3, "properties", "panel"]],
   ["`mesh: {vertices, triangles}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 1]],
   ["`mesh: {file}`", ["$defs", "cloth", "properties", "mesh", "oneOf", 2]],
   ["`transform`", ["$defs", "cloth", "properties", "transform"]],

@@ -24,6 +24,13 @@ export interface Grid {
   width: number;
   height: number;
 }
+/// A flat piece by its outline, [x, z] [m].
+export interface Panel {
+  outline: [number, number][];
+  holes: [number, number][][];
+  edge: number; ///< length of a mesh's edge [m]
+  edges: Record<string, [number, number]>;
+}
 export interface InlineMesh {
   vertices: Vec3[];
   triangles: Vec3[];
@@ -35,7 +42,7 @@ export type NamedMesh = ({ file: string } | { obj: string }) & {
   pattern?: null | "uv";
   pattern_scale?: number;
 };
-export type Mesh = { grid: Grid } | InlineMesh | NamedMesh;
+export type Mesh = { grid: Grid } | { panel: Panel } | InlineMesh | NamedMesh;
 
 export type At = string | { box: [Vec3, Vec3] };
 export interface Pin {
