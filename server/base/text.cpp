@@ -21,4 +21,8 @@ std::string with_significant_digits(double value, int digits) {
   return formatted("%.*g", digits, value);
 }
 
+std::string percent(double share) {
+  return with_significant_digits(100.0 * share, 3) + " %";
+}
+
 }  // namespace clothlab

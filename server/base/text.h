@@ -11,4 +11,7 @@ namespace clothlab {
 /// `value` with at most `digits` significant digits, trailing zeros left out.
 std::string with_significant_digits(double value, int digits);
 
+/// A share in percent, with three significant digits: "3.4 %".
+std::string percent(double share);
+
 }  // namespace clothlab

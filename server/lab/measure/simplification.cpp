@@ -16,10 +16,6 @@ using scene::Document;
 
 constexpr double truth_progress = 0.4;  // of the job's progress: computing the reference
 
-std::string percent(double share) {
-  return with_significant_digits(100.0 * share, 3) + " %";
-}
-
 /// "a", "a and b", "a, b and c".
 std::string list(const std::vector<std::string>& names) {
   std::string text;

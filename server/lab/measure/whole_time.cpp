@@ -15,7 +15,7 @@ namespace clothlab::lab {
 
 namespace {
 
-constexpr int fewest_looks = 4, most_looks_at_whole = 32;  // evenly spread over the time
+constexpr int fewest_looks_at_whole = 4, most_looks_at_whole = 32;  // evenly spread over the time
 /// The run that strain is compared with. Cotton of 25x25 vertices is then within 0.6 mm of 1 m after a
 /// quarter of a second (tests/README.md), far less than what folds differ by in strain.
 constexpr double longest_solved_step = 1.0 / 240;  // [s]
@@ -44,10 +44,6 @@ bool does_work(const scene::Scene& scene, const model::Model& model) {
          std::any_of(model.motions.begin(), model.motions.end(), scene::has_motion) ||
          std::any_of(scene.colliders.begin(), scene.colliders.end(),
                      [](const scene::Collider& of) { return scene::has_motion(of.motion); });
-}
-
-std::string percent(double share) {
-  return with_significant_digits(100.0 * share, 2) + " %";
 }
 
 }  // namespace
@@ -102,7 +98,7 @@ double WholeTime::allowed_error(const Setting& setting) const {
 
 Result<std::string> WholeTime::fault(const Setting& setting) {
   const int looks = static_cast<int>(
-      std::clamp(truth_.asked / setting.dt, double{fewest_looks}, double{most_looks_at_whole}));
+      std::clamp(truth_.asked / setting.dt, double{fewest_looks_at_whole}, double{most_looks_at_whole}));
   const Result<Run> whole = run(setting, looks);
   if (!whole) return whole.error();
   const auto at = [](double time) { return with_significant_digits(time, 3) + " s"; };
