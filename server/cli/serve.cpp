@@ -76,6 +76,9 @@ Result<Lock> claim_state_folder(const net::Options& options) {
 void warn_of_gpus() {
   if (gl::gpus_without_opengl({}).empty()) return;  // no GPU: the devices need not be opened
   const Result<std::vector<gl::Device>> devices = gl::list_devices();
+  if (devices && std::any_of(devices->begin(), devices->end(),
+                             [](const gl::Device& of) { return of.usable && !of.software; }))
+    return;
   for (const std::string& gpu : gl::gpus_without_opengl(devices ? *devices : std::vector<gl::Device>()))
     log(LogLevel::warning, "gpu_without_opengl", {{"why", gpu}});
 }

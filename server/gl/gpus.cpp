@@ -33,9 +33,10 @@ Place place(const std::string& name) {
 std::vector<Place> entries(const std::string& folder, std::string_view begins) {
   std::vector<Place> found;
   std::error_code failure;
-  for (const auto& entry : fs::directory_iterator(place(folder).path, failure)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(begins)) found.push_back({entry.path(), folder + "/" + name});
+  for (fs::directory_iterator entry(place(folder).path, failure), end; !failure && entry != end;
+       entry.increment(failure)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with(begins)) found.push_back({entry->path(), folder + "/" + name});
   }
   std::sort(found.begin(), found.end(), [](const Place& a, const Place& b) { return a.name < b.name; });
   return found;
@@ -80,7 +81,7 @@ bool offers(const std::vector<Device>& listed, bool nvidia) {
 std::optional<std::string> nvidia_without_opengl() {
   const Maker& nvidia = makers[0];
   std::error_code failure;
-  for (const char* file : {"/dev/nvidia0", "/dev/nvidiactl", "/dev/dxg"})
+  for (const char* file : {"/dev/nvidia0", "/dev/nvidiactl"})
     if (fs::exists(place(file).path, failure))
       return std::string("an NVIDIA GPU is here (") + file +
              ") without its OpenGL: to a container pass --gpus all -e "
@@ -92,8 +93,7 @@ std::optional<std::string> nvidia_without_opengl() {
   return "an NVIDIA GPU is in this machine (" + *bus +
          ") and not passed on, or without its driver (no /dev/nvidia0): to a container pass --gpus all -e "
          "NVIDIA_DRIVER_CAPABILITIES=graphics,compute,utility (on the host: nvidia-container-toolkit); on "
-         "the "
-         "machine itself install NVIDIA's driver";
+         "the machine itself install NVIDIA's driver";
 }
 
 std::optional<std::string> other_without_opengl(const Maker& maker) {

@@ -189,6 +189,14 @@ double expected_vertices(const Panel& panel) {
   return count;
 }
 
+/// Of each vertex of the rings with all of them, and of each corner of a lattice over the panel's extent [m].
+double comparisons(const std::vector<Ring>& rings, double edge, const dvec2& extent) {
+  double around = 0.0;
+  for (const Ring& ring : rings) around += static_cast<double>(ring.size());
+  return around * (around + extent.x * extent.y / (std::sqrt(0.75) * edge * edge));
+}
+constexpr double most_comparisons = 1e8;  // about a second
+
 PanelFault too_coarse() {
   return {0, 0, "edges so long that the outline crosses itself between them", "a shorter edge", true};
 }
@@ -210,6 +218,10 @@ std::optional<PanelFault> mesh_panel(const Panel& panel, PanelMesh& mesh) {
     for (const dvec2& point : ring.vertices) low = glm::min(low, point), high = glm::max(high, point);
     rings.push_back(std::move(ring.vertices));
   }
+  if (const double work = comparisons(rings, panel.edge, high - low); work > most_comparisons)
+    return PanelFault{
+        0, 0, formatted("an edge that takes %.3g comparisons of the mesh with the outline", work),
+        formatted("a longer edge, or a piece that lies along an axis: at most %.3g", most_comparisons), true};
   if (crossing(rings)) return too_coarse();
   PlanarTriangulation triangulation(low, high);
   for (const Ring& ring : rings)

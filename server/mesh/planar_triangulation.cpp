@@ -262,6 +262,7 @@ bool PlanarTriangulation::improve(std::uint32_t point) {
   }
   const dvec2 before = points_[point];
   const double least = worst();
+  if (!(weight > 0.0)) return false;
   points_[point] = sum / weight;
   if (worst() >= least) return true;
   points_[point] = before;

@@ -136,7 +136,7 @@ constexpr std::array<Corners, 12> box_triangles{{{0, 4, 6},
 
 bool has_edges(const scene::Scene& scene, const scene::Collider& collider) {
   return scene.collides(scene::ContactKind::surface) && std::holds_alternative<scene::Box>(collider.shape) &&
-         std::holds_alternative<std::monostate>(collider.motion);
+         !scene::has_motion(collider.motion);
 }
 
 void add_bodies(Model& model, const scene::Scene& scene) {

@@ -85,9 +85,10 @@ void Keeper::finish(Stepper& stepper) {
 }
 
 void Keeper::save(Stepper& stepper) {
-  saved_version_ = stepper.version();
+  const auto version = stepper.version();
   auto saved = std::make_shared<const Saved>(stepper.saved());
   if (stepper.lost()) return;  // what has been read may be anything
+  saved_version_ = version;
   exchange_.store_saved(saved);
   if (!file_) return;
   const clothlab::Status written = write(*saved);

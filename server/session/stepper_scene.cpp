@@ -17,7 +17,7 @@ namespace {
 /// True if a patch puts another document in the place of all: that its cloth is new is what was asked for.
 bool replaces_all(const json& patch) {
   return patch.is_array() && std::any_of(patch.begin(), patch.end(), [](const json& operation) {
-           return operation.value("path", "/") == "";
+           return operation.value("op", "") == "replace" && operation.value("path", "/") == "";
          });
 }
 

@@ -32,10 +32,9 @@ ChangeDepth change_depth(const scene::Scene& from, const scene::Scene& to);
 struct Diagnostics {
   double time = 0;  ///< [s]
   std::uint64_t step = 0;
-  double kinetic = 0;                                                        ///< [J]
-  double elastic = 0;                                                        ///< [J]
-  double gravitational = 0;                                                  ///< [J], 0 at the origin
-  double total_energy() const { return kinetic + elastic + gravitational; }  ///< [J]
+  double kinetic = 0;          ///< [J]
+  double elastic = 0;          ///< [J]
+  double gravitational = 0;    ///< [J], 0 at the origin
   double max_strain = 0;       ///< largest |l/L - 1| over the springs
   double max_speed = 0;        ///< [m/s]
   std::uint32_t contacts = 0;  ///< vertices touching a collider or another vertex
@@ -55,6 +54,8 @@ struct Diagnostics {
   std::uint32_t surface_not_taken =
       0;  ///< steps not taken, or not to their end, as lists had no room for all pairs, the same
   std::uint32_t surface_searches = 0;  ///< searches for pairs, the same
+
+  double total_energy() const { return kinetic + elastic + gravitational; }  ///< [J]
 };
 
 /// The state as floats, read back from the GPU.

@@ -40,10 +40,20 @@ bool Substitute::excludes(const Part& part) const {
 
 Status Substitutes::start(double time, const std::function<void(double share)>& progress,
                           std::vector<std::string>& notes) {
-  Result<Truth> truth = lab::truth(whole_.document.scene, {time, 1e-6, truth_budget}, stop_, progress);
+  const scene::Scene& scene = whole_.document.scene;
+  TruthRequest request{time, 1e-6, truth_budget};
+  // What a part changes is measured against the whole scene, which has that contact.
+  request.beyond_touch = true;
+  Result<Truth> truth = lab::truth(scene, request, stop_, progress);
   if (!truth) return truth.error();
   truth_ = std::move(*truth);
   notes = truth_.notes;
+  if (scene.collides(scene::ContactKind::surface) ||
+      std::any_of(scene.colliders.begin(), scene.colliders.end(),
+                  [](const scene::Collider& of) { return of.is_body(); }))
+    notes.push_back(
+        "The reference knows no contact of surfaces, of cloths or of bodies of triangles: it is the true "
+        "motion until they touch.");
   if (truth_.why_no_reference.empty()) {
     notes.push_back(truth_.horizon_reason);
     if (truth_.horizon > 0.0 && truth_.horizon < truth_.time)

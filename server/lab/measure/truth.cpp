@@ -130,6 +130,7 @@ class Search {
   /// Ends the reference at time `before` [s] if surfaces touch in `state`, at time `now` [s], or tells that
   /// there is none. `look`: how many have gone before.
   bool ended_by_touch(const State& state, double before, double now, int look) {
+    if (request_.beyond_touch) return false;
     const std::string touching = touch_.look(state.position, now);
     if (touching.empty()) return false;
     const std::string when = touching + " touch before " + with_significant_digits(now, 3) + " s";

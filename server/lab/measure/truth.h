@@ -48,6 +48,7 @@ struct TruthRequest {
   /// Is told the truth as two runs have it, with its larger errors, before the steps are halved further,
   /// which takes most of the time. What it takes itself is not of the budget; its error ends the work.
   std::function<Status(const Truth& coarse)> early = {};
+  bool beyond_touch = false;  ///< goes on where surfaces touch, of which the reference knows no contact
 };
 
 /// Runs the reference in double precision, by RK4 or, for a scene for which that costs less, by Esdirk

@@ -110,8 +110,8 @@ Result<std::string> WholeTime::fault(const Setting& setting) {
     return "its energy rises by " + with_significant_digits(whole->gained, 2) +
            " J, and nothing gives it any";
   if (!solved_) {
-    Result<Run> solved =
-        run({scene::Method::bdf2, longest_solved_step, most_newton_steps, solved_tolerance}, looks);
+    Result<Run> solved = run({scene::Method::bdf2, longest_solved_step, most_newton_steps, solved_tolerance},
+                             most_looks_at_whole);
     if (!solved) return solved.error();
     solved_ = std::move(*solved);
   }
@@ -122,6 +122,7 @@ Result<std::string> WholeTime::fault(const Setting& setting) {
   finer.dt /= 2;
   const Result<Run> half = run(finer, looks);
   if (!half) return half.error();
+  if (half->blew_up_at) return "half of its step blows up before " + at(*half->blew_up_at);
   for (std::size_t look = 0; look < half->centre.size(); ++look) {
     const double apart = glm::distance(half->centre[look], whole->centre[look]) / truth_.size;
     if (apart > tolerance_)

@@ -55,7 +55,10 @@ export class Timeline {
     this.card.append(this.marks, this.range, this.where, this.size, this.live, this.from);
     element("transport", HTMLElement).before(this.card);
     addEventListener("keydown", (event) => this.key(event), { capture: true });
-    host.picture.kept.wentBack = (step) => step !== this.goingTo && this.withdraw();
+    host.picture.kept.wentBack = (step) => {
+      if (step !== this.goingTo) this.withdraw();
+      this.goingTo = -1;
+    };
     this.open(true);
   }
 
@@ -179,6 +182,7 @@ export class Timeline {
         stays: true,
       });
     } catch (error) {
+      this.goingTo = -1;
       this.follow();
       noticeError("Not gone back", error as Error);
     }
