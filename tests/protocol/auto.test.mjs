@@ -22,11 +22,12 @@ test("a session with the method auto plays stably at once, then with what the la
   const first = await auto(client, ({ state }) => state === "measuring");
   assert.equal(first.solver.auto.method, "verlet");
   assert.ok(first.stability.margin < 1);
-  const { solver, stability } = await auto(client, ({ state }) => state === "chosen");
+  const { solver } = await auto(client, ({ state }) => state === "chosen");
   assert.equal(solver.auto.met, true);
   assert.ok(solver.auto.expected_error <= 0.01);
   assert.ok(solver.auto.why.length > 20);
-  assert.ok(stability.margin === null || stability.margin <= 0.91);
+  // Until the longest stable step is found, the margin is that to a lower bound of it.
+  await client.nextNotification("sim.status", ({ stability }) => stability.margin === null || stability.margin <= 0.91);
   assert.ok(client.messages.some((m) => m.method === "notice" && /method auto: /.test(m.params.text)));
 
   // The document still names the method that was asked for.
