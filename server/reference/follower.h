@@ -1,11 +1,11 @@
 // Advances the reference from one time to another, by the method and with the steps that its pace says.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <stop_token>
 
+#include "server/base/thread_clock.h"
 #include "server/reference/pace.h"
 #include "server/reference/reference.h"
 
@@ -59,7 +59,7 @@ class Follower {
 /// Advances a state by Esdirk with steps that keep its error estimate, and so finds a pace.
 class Scout : public Follower {
  public:
-  using Clock = std::chrono::steady_clock;
+  using Clock = ThreadClock;
 
   /// `error_rate`: estimated error a second of motion [m/s]; `precision` as in Pace [m]; `first_step` [s].
   Scout(World world, double error_rate, double precision, double first_step, const std::stop_token& stop);

@@ -1,10 +1,10 @@
 #include "server/session/keeper.h"
 
 #include <algorithm>
-#include <ctime>
 
 #include "server/base/files.h"
 #include "server/base/log.h"
+#include "server/base/thread_clock.h"
 #include "server/session/exchange.h"
 #include "server/session/mesh_shelf.h"
 #include "server/session/stepper.h"
@@ -12,17 +12,6 @@
 namespace clothlab::session {
 
 namespace fs = std::filesystem;
-
-namespace {
-
-/// Of the calling thread.
-Keeper::Clock::duration processor_time() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
-}
-
-}  // namespace
 
 fs::path session_file(const fs::path& folder, const std::string& session) {
   return folder / (session + ".session");
@@ -70,9 +59,9 @@ bool Keeper::due(const Stepper& stepper) const {
 
 void Keeper::save_if_due(Stepper& stepper, Clock::time_point now) {
   if (now < next_ || !due(stepper)) return;
-  const Clock::duration worked = processor_time();
+  const ThreadClock::time_point begun = ThreadClock::now();
   save(stepper);
-  next_ = next_save(now, Clock::now(), processor_time() - worked);
+  next_ = next_save(now, Clock::now(), ThreadClock::now() - begun);
 }
 
 Keeper::Clock::time_point Keeper::next_save(Clock::time_point begun, Clock::time_point now,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "server/base/text.h"
+#include "server/base/thread_clock.h"
 #include "server/lab/measure/control.h"
 #include "server/lab/measure/first_touch.h"
 #include "server/lab/measure/horizon.h"
@@ -23,7 +24,6 @@ using reference::Follower;
 using reference::Pace;
 using reference::State;
 using reference::World;
-using Clock = std::chrono::steady_clock;
 
 /// The reference's longest step in units of 1 / fastest_rate. RK4 is stable up to 2.6; at 1 its error on the
 /// swinging cloth is already as small as float32 allows at best, 1e-7 of the size.
@@ -45,8 +45,8 @@ constexpr double share_of_first_look = 0.05;  // of that
 constexpr int fewest_stiff_looks = 3;         // with a shorter affordable time there is no reference
 constexpr int fewest_looks_to_touch = 4;      // with surfaces that touch earlier there is no reference
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+double seconds_since(ThreadClock::time_point start) {
+  return std::chrono::duration<double>(ThreadClock::now() - start).count();
 }
 
 /// The samples of one run of the reference.
@@ -70,7 +70,7 @@ class Search {
         touch_(touch),
         stop_(stop),
         progress_(progress),
-        start_(Clock::now()),
+        start_(ThreadClock::now()),
         budget_(request.budget),
         accuracy_(request.accuracy) {}
 
@@ -88,8 +88,8 @@ class Search {
   }
 
  private:
-  Clock::time_point after(double seconds) const {
-    return start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  ThreadClock::time_point after(double seconds) const {
+    return start_ + std::chrono::duration_cast<ThreadClock::duration>(std::chrono::duration<double>(seconds));
   }
   double left() const { return budget_ - seconds_since(start_); }
 
@@ -100,7 +100,7 @@ class Search {
     const double step = pace_.largest_step;
     Follower follower(truth_.world, pace_, stop_);
     State state = reference::at_rest(truth_.world);
-    const Clock::time_point begun = Clock::now();
+    const ThreadClock::time_point begun = ThreadClock::now();
     int tried = 0;
     for (; tried < 8 || (tried < 256 && seconds_since(begun) < 0.1); ++tried)
       if (!follower.follow(state, tried * step, (tried + 1) * step)) return cancelled;
@@ -242,14 +242,14 @@ class Search {
   /// fit into the budget.
   Status refine() {
     truth_.spacing = (truth_.horizon > 0.0 ? truth_.horizon : truth_.time) / samples_to_horizon;
-    Clock::time_point begun = Clock::now();
+    ThreadClock::time_point begun = ThreadClock::now();
     Result<Run> coarse = record(pace_, 0.3, 0.4);
     if (!coarse) return coarse.error();
     double difference_before = 0.0;
     for (int halving = 1; halving <= most_halvings; ++halving) {
       const double spent = seconds_since(begun);
       if (halving > 1 && 2.2 * spent > left()) break;
-      begun = Clock::now();
+      begun = ThreadClock::now();
       Result<Run> fine = record(pace_.halved(halving), 0.4 + 0.6 * (1.0 - 1.0 / halving), 1.0);
       if (!fine) return fine.error();
       truth_.pace = pace_.halved(halving);
@@ -261,10 +261,10 @@ class Search {
       difference_before = difference;
       if (halving > 1 || !request_.early) continue;
       take(*coarse);
-      const Clock::time_point told = Clock::now();
+      const ThreadClock::time_point told = ThreadClock::now();
       if (Status taken = request_.early(truth_); !taken) return taken;
       budget_ += seconds_since(told);
-      begun += Clock::now() - told;
+      begun += ThreadClock::now() - told;
     }
     take(std::move(*coarse));
     return ok();
@@ -301,7 +301,7 @@ class Search {
   FirstTouch& touch_;
   const std::stop_token& stop_;
   const std::function<void(double)>& progress_;
-  Clock::time_point start_;
+  ThreadClock::time_point start_;
   double budget_, accuracy_;
   std::string ended_;  // why the reference ends before the time that was asked for, a sentence and a space
   Pace pace_;          // with the longest steps

@@ -43,7 +43,7 @@ struct Truth {
 struct TruthRequest {
   double time = 1.0;       ///< to simulate [s]
   double accuracy = 1e-7;  ///< error of the reference to aim for: RMS over size at the horizon
-  double budget = 30.0;    ///< wall time to spend [s]
+  double budget = 30.0;    ///< processor time to spend [s]
   std::optional<double> stiff_budget = {};  ///< the same for a scene too stiff for RK4 [s]; none: as `budget`
   /// Is told the truth as two runs have it, with its larger errors, before the steps are halved further,
   /// which takes most of the time. What it takes itself is not of the budget; its error ends the work.
