@@ -150,8 +150,8 @@ Choice choice(const json& value) {
   read_heading(choice, value);
   choice.tolerance = number(value.at("tolerance"));
   choice.horizon = number(value.at("horizon_s"));
-  choice.asked = value.contains("asked_s") ? number(value.at("asked_s")) : choice.horizon;
-  choice.horizon_reason = value.value("horizon_reason", "");
+  choice.asked = number(value.at("asked_s"));
+  choice.horizon_reason = value.at("horizon_reason");
   choice.reference_error = number(value.at("reference_error"));
   choice.met = value.at("met").get<bool>();
   choice.chosen = point(value.at("chosen"));
