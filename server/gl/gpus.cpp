@@ -78,7 +78,8 @@ bool offers(const std::vector<Device>& listed, bool nvidia) {
   });
 }
 
-std::optional<std::string> nvidia_without_opengl() {
+/// `other`: OpenGL offers a GPU by Mesa, which may be this one.
+std::optional<std::string> nvidia_without_opengl(bool other) {
   const Maker& nvidia = makers[0];
   std::error_code failure;
   for (const char* file : {"/dev/nvidia0", "/dev/nvidiactl"})
@@ -89,7 +90,7 @@ std::optional<std::string> nvidia_without_opengl() {
              "itself install libegl1 and the driver's OpenGL (Debian: libegl1 libegl-nvidia0; Ubuntu: "
              "libegl1 libnvidia-gl-VERSION)";
   const std::optional<std::string> bus = on_bus(nvidia);
-  if (!bus) return std::nullopt;
+  if (!bus || other) return std::nullopt;
   return "an NVIDIA GPU is in this machine (" + *bus +
          ") and not passed on, or without its driver (no /dev/nvidia0): to a container pass --gpus all -e "
          "NVIDIA_DRIVER_CAPABILITIES=graphics,compute,utility (on the host: nvidia-container-toolkit); on "
@@ -121,8 +122,9 @@ std::vector<std::string> gpus_without_opengl(const std::vector<Device>& listed) 
   const auto add = [&](std::optional<std::string> told) {
     if (told) found.push_back(std::move(*told));
   };
-  if (!offers(listed, true)) add(nvidia_without_opengl());
-  if (!offers(listed, false))
+  const bool by_mesa = offers(listed, false);
+  if (!offers(listed, true)) add(nvidia_without_opengl(by_mesa));
+  if (!by_mesa)
     for (const Maker& maker : {makers[1], makers[2]}) add(other_without_opengl(maker));
   return found;
 }

@@ -1,15 +1,14 @@
 #include "server/net/service_time.h"
 
-#include <time.h>
-
 #include <algorithm>
+#include <chrono>
+
+#include "server/base/thread_clock.h"
 
 namespace clothlab::net {
 
 std::int64_t thread_time_us() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::int64_t{time.tv_sec} * 1'000'000 + time.tv_nsec / 1000;
+  return std::chrono::duration_cast<std::chrono::microseconds>(ThreadClock::now().time_since_epoch()).count();
 }
 
 std::int64_t ServicePool::wait(const std::string& network, std::int64_t now) const {

@@ -277,6 +277,11 @@ struct Collider {
   bool operator==(const Collider&) const = default;
 };
 
+inline bool any_has_motion(const std::vector<Collider>& colliders) {
+  return std::any_of(colliders.begin(), colliders.end(),
+                     [](const Collider& each) { return has_motion(each.motion); });
+}
+
 /// What self-collision keeps apart: vertices, or triangles and edges, which then never pass through each
 /// other.
 enum class ContactKind { points, surface };

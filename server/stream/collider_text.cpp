@@ -14,11 +14,8 @@ namespace clothlab::stream {
 using nlohmann::json;
 
 json moving_colliders(const sim::Simulation& simulation) {
-  const std::vector<scene::Collider>& home = simulation.scene().colliders;
   // In most scenes no collider moves: this function then allocates nothing.
-  if (std::none_of(home.begin(), home.end(),
-                   [](const scene::Collider& each) { return scene::has_motion(each.motion); }))
-    return nullptr;
+  if (!scene::any_has_motion(simulation.scene().colliders)) return nullptr;
   return moving_colliders(simulation.colliders_now());
 }
 

@@ -58,7 +58,7 @@ class Chooser {
                                       static_cast<double>(candidates.size()),
            1.0, text(candidates[i].setting)});
       if (Status searched = search_->search(candidates[i]); !searched) return searched.error();
-      if (Status kept = keep_whole_time(candidates[i]); !kept) return kept.error();
+      if (Status kept = shorten_for_whole_time(candidates[i]); !kept) return kept.error();
       choice_.tried = search_->tried();
       control_.arrived(choice_);
     }
@@ -102,20 +102,28 @@ class Chooser {
     return ok();
   }
 
-  /// Where the reference ends early, a candidate with which something is wrong later gets a shorter step, or
-  /// leaves the race.
-  Status keep_whole_time(Candidate& candidate) {
-    if (!whole_time_) return ok();
+  /// Whether nothing speaks against a setting up to the time that was asked for, where the reference ends
+  /// earlier. If something does and `tell`, a note says what; `name`: the setting's, in the note.
+  Result<bool> keeps_whole_time(const Setting& setting, const std::string& name, bool tell) {
+    if (!whole_time_) return true;
+    const Result<std::string> fault = whole_time_->fault(setting);
+    if (!fault) return fault.error();
+    if (tell && !fault->empty())
+      choice_.notes.push_back(name + " keeps the tolerance up to " +
+                              with_significant_digits(truth_.horizon, 3) + " s, but " + *fault + ".");
+    return fault->empty();
+  }
+
+  /// A candidate with which something is wrong beyond the horizon gets a shorter step, or leaves the race.
+  Status shorten_for_whole_time(Candidate& candidate) {
     for (int halving = 0; candidate.best; ++halving) {
       const Setting setting = candidate.best->setting;
-      const Result<std::string> fault = whole_time_->fault(setting);
-      if (!fault) return fault.error();
-      if (fault->empty()) return ok();
+      const bool last = halving == most_halvings;
+      const Result<bool> keeps = keeps_whole_time(setting, text(setting), halving == 0 || last);
+      if (!keeps) return keeps.error();
+      if (*keeps) return ok();
       candidate.best.reset();
-      if (halving == 0 || halving == most_halvings)
-        choice_.notes.push_back(text(setting) + " keeps the tolerance up to " +
-                                with_significant_digits(truth_.horizon, 3) + " s, but " + *fault + ".");
-      if (halving == most_halvings || !search_->may_compete(candidate, 0.5 * setting.dt)) return ok();
+      if (last || !search_->may_compete(candidate, 0.5 * setting.dt)) return ok();
       const Result<double> error = search_->step_at(candidate, 0.5 * setting.dt);
       if (!error) return error.error();
       if (*error > request_.tolerance) candidate.best.reset();
@@ -262,15 +270,8 @@ class Chooser {
       set_error(present, errors->front());
     }
     if (present.error_high.value_or(worst) > request_.tolerance) return false;
-    if (whole_time_) {
-      const Result<std::string> fault = whole_time_->fault(present.setting);
-      if (!fault) return fault.error();
-      if (!fault->empty()) {
-        choice_.notes.push_back("The scene's own setting keeps the tolerance up to " +
-                                with_significant_digits(truth_.horizon, 3) + " s, but " + *fault + ".");
-        return false;
-      }
-    }
+    const Result<bool> keeps = keeps_whole_time(present.setting, "The scene's own setting", true);
+    if (!keeps || !*keeps) return keeps;
     return keeps_margin(present);
   }
 

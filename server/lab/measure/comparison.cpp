@@ -78,11 +78,7 @@ class Stepped {
     return told(between);
   }
 
-  bool colliders_move() const {
-    const auto& colliders = simulation_->scene().colliders;
-    return std::any_of(colliders.begin(), colliders.end(),
-                       [](const scene::Collider& each) { return scene::has_motion(each.motion); });
-  }
+  bool colliders_move() const { return scene::any_has_motion(simulation_->scene().colliders); }
   std::vector<scene::Collider> colliders() const { return simulation_->colliders_now(); }
 
  private:

@@ -40,10 +40,8 @@ glm::dvec3 centre_of_free(const sim::State& state, const model::Model& model) {
 
 /// True if wind, keys, or a pin or collider that moves may give energy to the cloth.
 bool does_work(const scene::Scene& scene, const model::Model& model) {
-  return scene.wind || !scene.keys.empty() ||
-         std::any_of(model.motions.begin(), model.motions.end(), scene::has_motion) ||
-         std::any_of(scene.colliders.begin(), scene.colliders.end(),
-                     [](const scene::Collider& of) { return scene::has_motion(of.motion); });
+  return scene.wind || !scene.keys.empty() || scene::any_has_motion(scene.colliders) ||
+         std::any_of(model.motions.begin(), model.motions.end(), scene::has_motion);
 }
 
 }  // namespace
