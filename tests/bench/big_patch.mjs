@@ -7,6 +7,7 @@
 import { writeFileSync } from "node:fs";
 import { cpus } from "node:os";
 import { Client, Server, sleep } from "../protocol/harness.mjs";
+import { median } from "../median.mjs";
 
 const args = process.argv.slice(2);
 const out = args.includes("--out") ? args.splice(args.indexOf("--out"), 2)[1] : null;
@@ -26,7 +27,6 @@ const big = {
 const heavy = (i) => ({ cloths: [cloth(250 + (i % 2))], self_collision: null });
 
 const seconds = (from) => (performance.now() - from) / 1000;
-const median = (values) => values.toSorted((a, b) => a - b)[values.length >> 1];
 const rounded = (value) => Math.round(value * 1000) / 1000;
 
 /// Asks for the scene every 100 ms until `until` is done. Returns the times of the answers [s].

@@ -8,6 +8,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "nod
 import { cpus, loadavg, tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { median } from "../median.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const program = process.env.CLOTHLAB ?? join(here, "../../build/release/clothlab");
@@ -104,7 +105,6 @@ for (let round = 0; round < rounds; ++round)
   }
 rmSync(folder, { recursive: true });
 
-const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 const base = median(cases[0].seconds);
 console.log("| bodies | triangles | s for 0.6 s | to the first | pairs | searches |\n|---|---|---|---|---|---|");
 const results = cases.map(({ bodies, triangles, seconds, pairs, searches, renderer }) => {

@@ -6,6 +6,7 @@ import { writeFileSync } from "node:fs";
 import { cpus, loadavg } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { median } from "../median.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const build = join(here, "../../build/release");
@@ -13,7 +14,6 @@ const machine = process.argv[2] ?? `${cpus().length}-cores`;
 const rounds = { 25: 31, 64: 21, 128: 11, 256: 7 };
 execFileSync("cmake", ["--build", build, "--target", "bench_methods", "bench_strain_limit"], { stdio: "ignore" });
 
-const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 const lines = (program, ...words) =>
   execFileSync(join(build, "tests", program), words.map(String), { encoding: "utf8" })
     .trim()

@@ -8,6 +8,7 @@ import { cpus, loadavg, tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { parseArgs } from "node:util";
+import { median } from "../median.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const build = join(here, "../../build/release");
@@ -21,7 +22,6 @@ execFileSync("cmake", ["--build", build, "--target", "bench_models", "clothlab"]
 const folder = mkdtempSync(join(tmpdir(), "clothlab-models-"));
 const seconds = 0.25;
 
-const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
 const load = loadavg()[0];
 const steps = [];
 let renderer = "";

@@ -6,6 +6,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { median } from "../median.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const program = process.env.CLOTHLAB ?? join(here, "../../build/release/clothlab");
@@ -76,7 +77,6 @@ for (let round = 0; round < rounds; round++)
     trial.samples.push(JSON.parse(readFileSync(report, "utf8")).ns_per_vertex_step);
   }
 rmSync(folder, { recursive: true });
-const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 for (const { name, samples } of trials)
   console.log(
     name.padEnd(22),

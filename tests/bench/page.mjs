@@ -11,6 +11,7 @@ import { gzipSync } from "node:zlib";
 import { launch, Viewer } from "../browser/browser.mjs";
 import { Client, Server } from "../protocol/harness.mjs";
 import { fineDrape } from "./scenes.mjs";
+import { median } from "../median.mjs";
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
@@ -29,7 +30,6 @@ const bytes = (name) => readFileSync(dist + name);
 
 const server = await Server.start();
 const browser = await launch();
-const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
 // A visitor who has never been here: each page has a cache of its own. The first load also starts the browser's
 // graphics process, which a person's browser runs already.

@@ -8,6 +8,7 @@ import { writeFile } from "node:fs/promises";
 import { cpus } from "node:os";
 import { Client, Server, sleep } from "../protocol/harness.mjs";
 import { processorSeconds } from "./processor.mjs";
+import { median } from "../median.mjs";
 
 const args = process.argv.slice(2);
 const option = (name) => (args.includes(name) ? args.splice(args.indexOf(name), 2)[1] : null);
@@ -17,7 +18,6 @@ const numbers = (/^[\d,]+$/.test(args[0] ?? "") ? args.shift() : "1,2,4,16").spl
 const programs = args.length > 0 ? args : [process.env.CLOTHLAB];
 const rounds = 3;
 
-const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 const round = (value) => Number(value.toFixed(2));
 
 /// Counts a client's frames without decoding them: decoding here would disturb the measurement.

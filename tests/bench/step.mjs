@@ -7,6 +7,7 @@ import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { cpus, loadavg, tmpdir } from "node:os";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
+import { median } from "../median.mjs";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const build = join(here, "../../build/release");
@@ -21,8 +22,6 @@ const grids = [
   { side: 128, warmUp: 100, steps: 100 },
   { side: 256, warmUp: 40, steps: 30 },
 ];
-
-const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
 const results = [];
 for (const grid of grids)

@@ -5,11 +5,11 @@ import { writeFile } from "node:fs/promises";
 import { cpus, loadavg } from "node:os";
 import { load } from "../page/module.mjs";
 import { Client, Server } from "../protocol/harness.mjs";
+import { median } from "../median.mjs";
 
 const out = process.argv[2] === "--out" ? process.argv[3] : null;
 const before = loadavg()[0]; // of other processes: if it is not near 0, every time below is wrong
 const { Unpacker } = await load("link/unpack");
-const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 
 const server = await Server.start();
 const rows = [];

@@ -2,7 +2,8 @@
 // `wrong` if the device does something wrong.
 import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
-import { brief, clothlab, execute, folder, median, report } from "./programs.mjs";
+import { median } from "./median.mjs";
+import { brief, clothlab, execute, folder, report } from "./programs.mjs";
 import { heap } from "./scenes.mjs";
 import { served } from "./served.mjs";
 

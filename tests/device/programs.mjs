@@ -7,7 +7,6 @@ import { join } from "node:path";
 export const folder = mkdtempSync(join(tmpdir(), "clothlab-device-"));
 process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
 
-export const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 export const brief = (value) => (Number.isFinite(value) ? Number(value.toPrecision(4)) : null);
 
 /** Runs a program to its end, or to the limit. With `loud` its lines are shown as they come. */

@@ -4,7 +4,8 @@ import { writeFileSync } from "node:fs";
 import { join } from "node:path";
 import WebSocket from "ws";
 import { connect } from "./clients/clothlab.mjs";
-import { brief, folder, median } from "./programs.mjs";
+import { median } from "./median.mjs";
+import { brief, folder } from "./programs.mjs";
 import { sheet } from "./scenes.mjs";
 
 /** The value of the histogram that a share of what was added is below [s]. */
@@ -32,7 +33,7 @@ async function watch(here, scene, seconds, limit) {
     });
     const cloth = await connect(address, { WebSocket, timeout: limit });
     const at = [];
-    for await (const _ of cloth.frames({ rate: 60, encoding: "q16" })) {
+    for await (const _ of cloth.frames({ rate: 60, encoding: "q16", timeout: limit })) {
       at.push(performance.now());
       if (at.at(-1) - at[0] > 1000 * seconds) break;
     }

@@ -52,4 +52,4 @@ export function readMesh(path) {
   };
 }
 
-export const median = (list) => [...list].sort((a, b) => a - b)[list.length >> 1];
+export { median } from "../../median.mjs";
