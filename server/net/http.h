@@ -59,13 +59,13 @@ class HttpRequest {
   /// Answers with the picture or mesh that this request asked for, or with the error. The request is
   /// destroyed.
   void deliver(session::Exported exported);
-  /// The same with the page or the film of a recording.
+  /// Answers with a file made of a recording: its page or its film.
   void deliver_made(std::shared_ptr<const std::string> file);
   /// What was reserved for what is made for it.
   MemoryBudget::Reservation take_memory() { return std::move(memory_); }
-  /// The same with the mesh of a collider, null: there is none.
+  /// Answers with the mesh of a collider; null: there is none.
   void deliver_collider(const std::shared_ptr<const std::string>& mesh);
-  /// The same with the file that a session's document is.
+  /// Answers with a session's document as a file.
   void deliver_scene(const session::JsonText& file);
   /// True if the client has closed the connection, so that nobody waits for the answer.
   bool hung_up() const;

@@ -130,7 +130,7 @@ struct GrabMove {
   scene::dvec3 target{0.0};  ///< [m]
 };
 struct GrabEnd {
-  std::optional<int> hand;  ///< none: all of the client's
+  std::optional<int> hand;  ///< none: all hands of the client
 };
 struct Command {
   Ticket ticket;

@@ -18,7 +18,8 @@ struct Limits {
   int kept_every = 1000;           ///< a state is kept for the timeline every so many steps, or sooner
   /// The process's memory, of which a session reserves what its scene takes; null: it is not bounded.
   std::shared_ptr<MemoryBudget> memory{};
-  /// Of what a session can go back to: half for states, a quarter each for what changed the run and for undo.
+  /// Memory for what a session can go back to [bytes]: half for states, a quarter for changes of the run, a
+  /// quarter for undo.
   std::size_t past_bytes = 64 << 20;
   /// A change of the scene that is built within this time is not given up.
   std::chrono::milliseconds kept_building{1000};

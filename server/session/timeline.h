@@ -57,7 +57,7 @@ class Timeline {
   static Event scene_event(std::uint64_t step, const scene::Document& document, const scene::Scene& scene);
   static void apply(Event& to, const Event& later);
 
-  Event base_;                ///< in force at the beginning
+  Event base_;                ///< what is in force at the beginning
   std::deque<Event> events_;  ///< by step
   std::size_t bytes_ = 0;     ///< of events_
 };

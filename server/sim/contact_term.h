@@ -36,7 +36,7 @@ struct PressingPair {
 
 class ContactTerm {
  public:
-  /// `vertex_count`: with the places of bodies behind the cloths' vertices.
+  /// `vertex_count`: of the cloths' vertices and, behind them, the bodies'.
   static Result<ContactTerm> create(const model::Model& model, const Plan& plan, std::uint32_t vertex_count);
 
   void set_parameters(const scene::Scene& scene, const model::Model& model, const MotionTable& motions);
@@ -60,11 +60,12 @@ class ContactTerm {
   void bind() const;
 
   struct Limit {
-    bool known = false;           ///< the pairs: if not, nothing may move
+    bool known = false;           ///< the lists have all pairs; false: nothing may move
     std::uint32_t reachable = 0;  ///< listed pairs, and vertices at solids, that may press on the way
-    float longest = 0;            ///< way of a free vertex [m]
-    float pressed = 0;            ///< the same of one that a pair presses
-    double slips = 0;  ///< how far friction is off from what the solve took it to be, over all of it
+    float longest = 0;            ///< longest way of a free vertex [m]
+    float pressed = 0;            ///< longest way of a vertex that a pair presses [m]
+    double slips =
+        0;  ///< friction's difference from what the solve took it to be, as a share of all friction
   };
   /// Finds the share that may be taken of a change of velocity, and the change of contact's energy at shares
   /// of that. Waits for the GPU.
@@ -87,7 +88,7 @@ class ContactTerm {
   std::uint32_t begun_ = 0;  ///< entries that they began with
   bool incomplete_ = false;  ///< there was no memory for all pairs that press
   std::shared_ptr<ListMemory> memory_ = ListMemory::of_thread();  ///< null: the lists are not bounded by it
-  MemoryBudget::Reservation grown_;                               ///< of what the lists have grown by
+  MemoryBudget::Reservation grown_;                               ///< bytes that the lists have grown by
   std::uint32_t pressing_ = 0;
   bool bodies_move_ = false, pins_wait_ = false, solids_ = false;
   float dt_ = 0, margin_ = 0, solid_stiffness_ = 0, heaviest_ = 0;

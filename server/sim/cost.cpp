@@ -12,9 +12,9 @@ namespace clothlab::sim {
 namespace {
 
 // Costs [s] for each vertex, measured with tests/bench/step.mjs and methods.mjs.
-constexpr double gather = 50e-9;  ///< one evaluation of the forces
-constexpr double wind =
-    1.5 * gather;  ///< on one evaluation: it reads as many vertices, and has two roots a triangle
+constexpr double gather = 50e-9;       ///< one evaluation of the forces
+constexpr double wind = 1.5 * gather;  ///< in one evaluation: it reads as many vertices as `gather`, and
+                                       ///< takes two square roots a triangle
 /// Contact of points in one step, without the neighbour search: on a grid for each vertex that a search looks
 /// at (77 at 25x25 vertices of the seed's cloth, 131 ns; 204 at 48x48, 340 ns), in a heap for all together.
 constexpr double contact_on_grid = 1.7e-9, contact_in_heap = 150e-9;

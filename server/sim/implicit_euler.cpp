@@ -29,7 +29,7 @@ constexpr double untaken_share = 0.02;
 constexpr double slips_share = 0.03;
 /// `solve` goes on with contact until this share of those ways is left.
 constexpr double exact_share = 0.1;
-/// Of a solve with contact whose residual has lost its precision to rounding.
+/// How often a solve with contact may start again after its residual has lost its precision to rounding.
 constexpr int most_restarts = 4;
 
 /// Of all vertices that are not pinned [kg].

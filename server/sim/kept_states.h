@@ -40,7 +40,8 @@ class KeptStates {
   bool after_step = false;              ///< one is kept at the end of the next step, too
   bool due(std::uint64_t step) const { return after_step || (every > 0 && step % every == 0); }
 
-  /// Keeps what `copy` copies to a state. That may have buffers already, of the oldest, to be used again.
+  /// Keeps a state that `copy` fills. It may have buffers already, those of the oldest state, to be used
+  /// again.
   void keep(const std::function<void(KeptState&)>& copy);
   /// The newest state at or before `step`; null: there is none.
   const KeptState* at_or_before(std::uint64_t step) const;

@@ -66,7 +66,7 @@ Result<SelfCollision> SelfCollision::create(const model::Model& model, std::uint
   made.answers_ = gl::AnswersAtOnce::of_device();
   made.counters_ring_ = gl::ReadbackRing(sizeof(NeighbourControl), 1);
   made.heads_ = {gl::Buffer(cells * sizeof(std::uint32_t)), GL_R32UI};
-  made.heads_.buffer.fill(chain_end);  // later each search empties them at its end
+  made.heads_.buffer.fill(chain_end);  // later each search empties the heads at its end
   made.chains_ = {gl::Buffer(vertex_count * 4 * sizeof(std::uint32_t)), GL_RGBA32UI};
   made.counts_ = {gl::Buffer(vertex_count * sizeof(std::uint32_t)), GL_R32UI};
   made.lists_ = {gl::Buffer(std::size_t{vertex_count} * slots * 2 * sizeof(std::uint32_t)), GL_RG32UI};

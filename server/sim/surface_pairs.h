@@ -54,12 +54,12 @@ class SurfacePairs {
   /// The same between two pieces of a step, without a stop; a GPU is asked only where other things move.
   /// False: no list may be as long as the pairs need, so no piece can be taken.
   bool update_within_step(const StateBuffers& state);
-  /// The same before all vertices go straight from one place to another, by `velocity` in a step: then no
-  /// pair that is not listed presses on the way.
+  /// Lists the pairs before all vertices go straight from `from` to `to`, by `velocity` in a step: no other
+  /// pair presses on the way. False: as of update_within_step.
   bool update_for(const gl::TextureBuffer& from, const gl::TextureBuffer& to,
                   const gl::TextureBuffer& velocity, float dt);
 
-  /// What was listed for `update_for` is not all after all: nothing may move.
+  /// To be called where the lists of `update_for` turn out to lack pairs: then nothing may move.
   void leave_out();
 
   /// `driven`: pins, bodies or colliders move, also while a list is too short.
@@ -129,7 +129,7 @@ class SurfacePairs {
   bool no_memory_ = false;             ///< the last time that a list had to be longer
   bool no_room_ = false;  ///< the last look found that no search can do with lists of `most_` entries
   bool driven_ = false, in_pieces_ = false, searched_ = false;
-  gl::AnswersAtOnce answers_;  ///< none(groups)
+  gl::AnswersAtOnce answers_;  ///< to none(groups)
   std::uint64_t updates_ = 0;  ///< calls of `update` since `invalidate`
   gl::Program triangle_boxes_program_, boxes_program_, leaf_pairs_program_, bundle_pairs_program_,
       triangle_pairs_program_, neighbours_, candidates_, pairs_program_, rest_, finish_;

@@ -165,12 +165,12 @@ FUNCTION real share_of_step(real room, real away, real size, real rounding, real
 /// tenth of it (share_of_step) rounding is too small to turn it about.
 const real shortest_part = real(16.0);
 
-/// The steps of a pair's corners along n [m]; a corner that nothing may stop: `held`, 1, others 0. (Not bool: Mesa 22's
-/// zink makes SPIR-V of an array of these that no Vulkan driver takes.)
+/// The steps of a pair's corners along n [m]. (`held` is not bool: of an array of bool Mesa 22's zink makes SPIR-V that
+/// no Vulkan driver takes.)
 struct StepsAlong {
   real y[4];  // the corner's place
   real d[4];  // its step
-  int held[4];
+  int held[4];  // 1: nothing may stop the corner; else 0
 };
 
 /// Where the plane is that divides a pair, along n [m]: each part may take the share of the gap that it wants to take,

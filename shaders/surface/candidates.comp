@@ -60,8 +60,8 @@ uint corner(uvec2 both, int k) {
   return FETCH(triangle_boxes, k < 3 ? 4u * both.x + uint(k) : 4u * both.y + uint(k - 3)).w & number_mask;
 }
 
-/// The pair of two triangles of one of the bits: a vertex, and a triangle n, n + 1, n + 2; or edges m to m_end and n to
-/// n_end.
+/// The pair that bit number `bit` of the two triangles `both` stands for. Below 6: a vertex m and a triangle n, n + 1,
+/// n + 2; else an edge m to m_end and an edge n to n_end.
 uvec4 pair_of_bit(uvec2 both, int bit) {
   bool edges = bit >= 6;
   int m = edges ? bit / 3 - 2 : bit, n = edges ? 3 + bit % 3 : bit < 3 ? 3 : 0;

@@ -13,12 +13,12 @@ layout(std430, binding = slot_pair_loads) writeonly buffer Loads { vec4 pair_loa
 // Of each near pair two texels: push [m] and its kind (surface.glsl); impulse [m/s], and 1 if the pair shares its
 // corners in the next pass. Where both parts give way, both are over what the pair gives [1/kg].
 layout(std430, binding = slot_contact_pushes) writeonly buffer Pushes { vec4 contact_pushes[]; };
-uniform float friction;  // of cloths
+uniform float friction;  // coefficient between cloths
 uniform float mend;      // share of an overlap that the passes of a step remove
 uniform int first_pass;  // 1: the first pass of a step
 uniform int pushes;      // 1: the pass pushes pairs apart
-uniform int rubs;        // 1: it brakes what slides
-uniform int next_rubs;   // 1: the next pass brakes alone, and is shared by all pairs that have friction left
+uniform int rubs;        // 1: the pass brakes what slides
+uniform int next_rubs;   // 1: the next pass only brakes; all pairs that have friction left share it
 
 /// Relaxation of passes of friction alone: near 2 they stop sooner what slides.
 const float stops_sooner = 1.9;

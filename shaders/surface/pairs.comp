@@ -6,9 +6,9 @@ READ_VEC4(body_places, unit_body_places);  // home, motion; friction, restitutio
 READ_UVEC4(candidate_list, unit_near_pairs);
 layout(std430, binding = slot_surface_pairs) writeonly buffer Pairs { uvec4 list[]; };
 
-/// True if the part of a pair that is cloth is nearest to the other one at a place within that one's box: where a box
-/// was put, or where cloth started. Such a pair would keep the cloth in; vertices are pushed out without it. `c`: the
-/// corners' places less `origin`.
+/// True if the cloth of a pair of cloth and a box has its nearest point within the box, where the box was put or the
+/// cloth started. Such a pair would keep the cloth in; vertices are pushed out without it. `c`: the corners' places
+/// less `origin`.
 bool within_box(uvec4 corner, Corners c, vec3 origin, Separation apart) {
   int body = int(max(corner.x, corner.w)) - cloth_vertex_count;
   int first = body < 0 ? -1 : int(FETCH(body_places, 2 * body + 1).z);

@@ -13,7 +13,7 @@ layout(local_size_x = GROUP_SIZE) in;
 #include "../elements/contact.glsl"
 #include "../elements/surface.glsl"
 
-struct StepCounts {  // of a step; steps take turns with two of them
+struct StepCounts {  // there are two: steps take turns
   uint kept_groups, kept_groups_y, kept_groups_z;              // over the listed pairs that may be near
   uint near_groups, near_groups_y, near_groups_z;              // over the near pairs
   uint vertex_groups, vertex_groups_y, vertex_groups_z;        // over the vertices, if a pair is near
