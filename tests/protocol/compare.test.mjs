@@ -33,7 +33,7 @@ async function enter(scene = strip) {
 }
 async function compare(client, params) {
   const { job } = await client.request("lab.compare", params);
-  return client.notification("lab.result", (told) => told.job === job && told.state !== "running");
+  return client.labResult(job);
 }
 /// Why the lab refuses to compare.
 async function refusal(client, params) {
@@ -288,7 +288,7 @@ test("a cancelled one keeps what it has found, and says that it is not complete"
   const { job } = await client.request("lab.compare", { time: 60, patch: { solver: { dt: 0.00005 } } });
   await client.notification("lab.result", (told) => told.job === job);
   await client.request("lab.cancel", { job });
-  const end = await client.notification("lab.result", (told) => told.job === job && told.state !== "running");
+  const end = await client.labResult(job);
   assert.deepEqual([end.state, end.result.complete], ["cancelled", false]);
   assert.ok(end.result.times_s.length > 0);
   await client.close();

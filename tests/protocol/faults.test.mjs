@@ -7,7 +7,7 @@ import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { after, test } from "node:test";
 import { thorough } from "../thorough.mjs";
-import { Client, patience, runProgram, Server, sleep } from "./harness.mjs";
+import { Client, runProgram, Server, sleep } from "./harness.mjs";
 import { strip } from "./strip.mjs";
 
 const root = fileURLToPath(new URL("../../", import.meta.url));
@@ -273,10 +273,7 @@ test("a clock that jumps an hour ahead and two back: nobody is sent away, time g
     notices(client).filter(({ params }) => !/cannot keep up|of its speed/.test(params.text)),
     [],
   );
-  const { state: end } = await client.notification(
-    "lab.result",
-    (result) => result.job === job && result.state !== "running",
-  );
+  const { state: end } = await client.labResult(job);
   assert.equal(end, "finished");
   assert.equal((await server.get("/healthz")).status, 200);
   await server.stop("SIGKILL");
@@ -293,13 +290,7 @@ function hours(log) {
 }
 
 const chart = { methods: ["verlet", "symplectic_euler"], time: 0.2, budget: 5, fresh: true };
-/// What a job comes to. The lab works at the lowest priority: where others are busy it takes long.
-const measured = async (client, params = chart) => {
-  const { job } = await client.request("lab.chart", params);
-  const ends = ({ method, params: told }) => method === "lab.result" && told.job === job && told.state !== "running";
-  const { params: result } = await client.until(() => client.messages, ends, "the lab's result", 5 * patience);
-  return result;
-};
+const measured = async (client, params = chart) => client.labResult((await client.request("lab.chart", params)).job);
 
 // The last of what may happen is the one after which most has to be made anew.
 for (const [kind, why] of [

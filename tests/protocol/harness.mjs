@@ -238,6 +238,13 @@ export class Client {
     );
     return message.params;
   }
+  /// What a job of the lab comes to: the parameters of its last lab.result. The lab works at the lowest priority: where
+  /// others are busy it takes long.
+  async labResult(job) {
+    const last = ({ method, params }) => method === "lab.result" && params.job === job && params.state !== "running";
+    const message = await this.until(() => this.messages, last, `the result of the lab's job ${job}`, 8 * patience);
+    return message.params;
+  }
   /// Like `notification`, but only one that arrives from now on.
   nextNotification(method, predicate = () => true, patience = undefined) {
     const before = new Set(this.messages);

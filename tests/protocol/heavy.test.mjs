@@ -9,7 +9,6 @@ import { some } from "../thorough.mjs";
 import { Client, Server, sleep } from "./harness.mjs";
 import { heavyPatches, tooHeavy } from "./heavy.mjs";
 
-const patience = 60_000; // [ms]: building a million vertices takes time
 const subscription = { encoding: "q16", rate: 60, in_flight: 2 };
 
 /// One of each kind: many vertices, a solver, a dense search, sweeps in many dispatches, sweeps over many vertices, a
@@ -32,7 +31,7 @@ for (const name of some(kinds, 2))
       const heavy = await Client.connect(server, { session: "heavy" });
       await heavy.request("stream.subscribe", subscription);
       const { document } = await heavy.notification("scene");
-      const applied = await heavy.request("scene.patch", { patch: heavyPatches[name] }, patience);
+      const applied = await heavy.request("scene.patch", { patch: heavyPatches[name] });
 
       // While it steps, the other session's frames keep coming, and this session tells its state, is paused and steps
       // on.
@@ -45,10 +44,10 @@ for (const name of some(kinds, 2))
       await heavy.request("sim.play");
       assert.equal((await server.get("/healthz")).status, 200);
 
-      await heavy.request("scene.load", { scene: document }, patience);
+      await heavy.request("scene.load", { scene: document });
       const moving = await heavy.nextFrame();
       await heavy.nextFrame((frame) => frame.step > moving.step);
-      await heavy.request("scene.patch", { patch: heavyPatches[name] }, patience);
+      await heavy.request("scene.patch", { patch: heavyPatches[name] });
       assert.equal(await server.stop(), 0);
     } finally {
       await server.stop("SIGKILL").catch(() => {});
@@ -102,8 +101,8 @@ test("steps asked for by number are made one for one although each takes many tu
     await client.request("sim.pause");
     await client.request("scene.patch", { patch: { solver: { method: "xpbd", iterations: 2000 } } });
     const { step } = await client.request("sim.pause");
-    const first = client.request("sim.step", { steps: 2 }, patience),
-      second = client.request("sim.step", { steps: 1 }, patience);
+    const first = client.request("sim.step", { steps: 2 }),
+      second = client.request("sim.step", { steps: 1 });
     assert.equal((await client.request("scene.get")).document.solver.iterations, 2000);
     assert.equal((await first).step, step + 2);
     assert.equal((await second).step, step + 3);

@@ -30,7 +30,6 @@ async function enter({ at = server, session = `lab-${++sessions}`, plays = false
   client.session = session;
   return client;
 }
-const ends = (client, job) => client.notification("lab.result", (r) => r.job === job && r.state !== "running");
 const runs = (client, job) => client.notification("lab.progress", (p) => p.job === job && p.state === "running");
 const gauge = (name) => server.metric(`clothlab_lab_${name}`);
 
@@ -40,7 +39,7 @@ test("a chart arrives point by point, is finished, and can be exported as JSON, 
   assert.equal(ahead, 0);
   assert.equal(cached, false);
   await runs(client, job);
-  const end = await ends(client, job);
+  const end = await client.labResult(job);
   assert.equal(end.state, "finished");
   assert.equal(end.kind, "chart");
   assert.equal(end.stale, false);
@@ -78,19 +77,12 @@ thoroughTest("a sheet of finite elements is charted, mapped, chosen for and simp
   ];
   for (const [method, params] of jobs) {
     const { job } = await client.request(method, params);
-    const { state, result, error } = await client
-      .until(
-        () => client.messages,
-        (m) => m.method === "lab.result" && m.params.job === job && m.params.state !== "running",
-        method,
-        900_000,
-      )
-      .then(({ params }) => params);
+    const { state, result, error } = await client.labResult(job);
     assert.equal(state, "finished", `${method}: ${JSON.stringify(error)}`);
     assert.ok(!JSON.stringify(result).includes('"pbd"'), method);
   }
   const { job } = await client.request("lab.stability", { columns: 2, methods: ["pbd"] });
-  const { state, error } = await ends(client, job);
+  const { state, error } = await client.labResult(job);
   assert.equal(state, "failed");
   assert.match(error.allowed, /xpbd/);
   await client.close();
@@ -125,7 +117,7 @@ test("of two jobs the second waits for the first, and a job that is cancelled en
     await sleep(at);
     const begun = performance.now();
     assert.deepEqual(await client.request("lab.cancel", { job }), { job, cancelled: true });
-    assert.equal((await ends(client, job)).state, "cancelled");
+    assert.equal((await client.labResult(job)).state, "cancelled");
     waits.push(performance.now() - begun);
     assert.deepEqual(await client.request("lab.cancel", { job }), { job, cancelled: false });
   }
@@ -143,7 +135,7 @@ test("a job on a scene that changes meanwhile is stale; names and colours change
   await client.notification("lab.progress", (p) => p.job === job && p.stale);
   assert.equal((await client.request("lab.jobs")).jobs[0].stale, true);
   await client.request("lab.cancel", { job });
-  assert.equal((await ends(client, job)).stale, true);
+  assert.equal((await client.labResult(job)).stale, true);
   await client.close();
 });
 
@@ -172,7 +164,7 @@ test("a job that asks for it pauses the session, tells all who are there, and le
     assert.equal((await client.nextNotification("sim.status")).step, step);
     if (press) await other.request(press);
     await client.request("lab.cancel", { job });
-    assert.equal((await ends(client, job)).beside, false);
+    assert.equal((await client.labResult(job)).beside, false);
     await client.statuses(3);
     assert.equal((await client.nextNotification("sim.status")).playing, press === null);
   }
@@ -184,7 +176,7 @@ test("a job that asks for it pauses the session, tells all who are there, and le
 test("a job beside a session that plays says so in its result", async () => {
   const client = await enter({ plays: true });
   const { job } = await client.request("lab.chart", short);
-  assert.equal((await ends(client, job)).beside, true);
+  assert.equal((await client.labResult(job)).beside, true);
   await client.close();
 });
 

@@ -241,8 +241,7 @@ test("what does not fit --max-memory is refused with its number; who reads nothi
     /\d+ MB for recordings, where 38 MB are left; at most 38 MB of them, in a server of 268 MB/,
   );
   const { job } = await client.request("lab.simplify", {});
-  const ended = ({ job: of, state }) => of === job && state !== "running";
-  const { state, error } = await client.notification("lab.result", ended);
+  const { state, error } = await client.labResult(job);
   assert.equal(state, "failed");
   assert.match(error.found, /^25600 vertices, which take \d+ MB of memory$/);
   assert.match(error.allowed, /^at most \d+ MB, which are left of 136 MB/);
@@ -318,10 +317,7 @@ test("a measurement that takes longer than --max-lab-seconds ends with what it f
   const server = await start("--max-lab-seconds", "1");
   const client = await Client.connect(server);
   const { job } = await client.request("lab.chart", { budget: 600, time: 1 });
-  const { state, error } = await client.notification(
-    "lab.result",
-    (result) => result.job === job && result.state !== "running",
-  );
+  const { state, error } = await client.labResult(job);
   assert.equal(state, "failed");
   assert.match(error.found, /more than 1 s/);
   await client.close();
