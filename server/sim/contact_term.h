@@ -64,8 +64,8 @@ class ContactTerm {
     std::uint32_t reachable = 0;  ///< listed pairs, and vertices at solids, that may press on the way
     float longest = 0;            ///< longest way of a free vertex [m]
     float pressed = 0;            ///< longest way of a vertex that a pair presses [m]
-    double slips =
-        0;  ///< friction's difference from what the solve took it to be, as a share of all friction
+    /// Friction's difference from what the solve took it to be, as a share of all friction.
+    double slips = 0;
   };
   /// Finds the share that may be taken of a change of velocity, and the change of contact's energy at shares
   /// of that. Waits for the GPU.

@@ -18,22 +18,24 @@ function quantile(text, share) {
 
 async function watch(here, scene, seconds, limit) {
   const child = spawn(join(here, "with"), ["clothlab", "serve", "--port", "0", "--scene", scene]);
-  let said = "";
+  let said = "",
+    late = false;
+  const end = setTimeout(() => {
+    late = true;
+    child.kill("SIGKILL");
+  }, 1000 * limit);
   try {
     const address = await new Promise((resolve, reject) => {
-      const late = setTimeout(() => reject(new Error("the server does not listen")), 1000 * limit);
       child.stdout.on("data", (data) => {
         said += data;
         const found = /listening on (http:\S+)/.exec(said)?.[1];
-        if (!found) return;
-        clearTimeout(late);
-        resolve(found);
+        if (found) resolve(found);
       });
       child.on("exit", (code) => reject(new Error(`the server ended with ${code}`)));
     });
     const cloth = await connect(address, { WebSocket, timeout: limit });
     const at = [];
-    for await (const _ of cloth.frames({ rate: 60, encoding: "q16", timeout: limit })) {
+    for await (const _ of cloth.frames({ rate: 60, encoding: "q16" })) {
       at.push(performance.now());
       if (at.at(-1) - at[0] > 1000 * seconds) break;
     }
@@ -56,7 +58,10 @@ async function watch(here, scene, seconds, limit) {
       latency_p95_ms: brief(1000 * quantile(metrics, 0.95)),
       step_answered_ms: brief(median(answered)),
     };
+  } catch (error) {
+    throw late ? new Error(`frames did not come in the ${brief(limit)} s that were left`) : error;
   } finally {
+    clearTimeout(end);
     child.kill("SIGTERM");
   }
 }

@@ -5,7 +5,7 @@ import { after, afterEach, before, test } from "node:test";
 import { document, messages, operations } from "./asyncapi.mjs";
 import { Audit } from "./audit.mjs";
 import { candidates, resolved } from "./candidates.mjs";
-import { Client, Server, withTimeout } from "./harness.mjs";
+import { Client, labPatience, Server, withTimeout } from "./harness.mjs";
 import { strip as stripOf } from "./strip.mjs";
 
 const strip = stripOf(5);
@@ -45,11 +45,6 @@ const answerTo = (client, id) =>
     (message) => message.id === id,
     `the answer to ${id}`,
   );
-/// Waits for a message of the lab, which has the lowest priority on the machine.
-async function inTime(client, method, predicate) {
-  const fits = (message) => message.method === method && predicate(message.params);
-  return (await client.until(() => client.messages, fits, method, 900_000)).params;
-}
 const there = operations.filter(({ action }) => action === "receive");
 const paramsOf = (name) => resolved(messages[name].payload.properties.params);
 
@@ -299,7 +294,6 @@ test("a blow-up, its remedy and a cloth at rest are told as it says", async () =
 
 test("the five jobs of the lab, cancelled, failed, waiting and exported, tell of themselves as it says", async () => {
   const client = await enter(strip);
-  const ended = (job) => inTime(client, "lab.result", (result) => result.job === job && result.state !== "running");
   const quick = { time: 0.05, pause: true };
   const jobs = [
     [
@@ -313,7 +307,7 @@ test("the five jobs of the lab, cancelled, failed, waiting and exported, tell of
   ];
   for (const [method, params] of jobs) {
     const { job } = await client.request(method, params);
-    const { state, kind, result, error } = await ended(job);
+    const { state, kind, result, error } = await client.labResult(job);
     assert.equal(state, "finished", `${method}: ${JSON.stringify(error)}`);
     assert.equal(`lab.${kind}`, method);
     assert.equal(result.kind, kind);
@@ -326,9 +320,9 @@ test("the five jobs of the lab, cancelled, failed, waiting and exported, tell of
   assert.equal((await client.request("lab.moments", { job: own.at(-1).job, from: 1 })).from, 1);
   const { cached, job: known } = await client.request(...jobs[2]);
   assert.equal(cached, true);
-  await ended(known);
+  await client.labResult(known);
   const { job: failing } = await client.request("lab.stability", { field: "/no/such" });
-  const { state, error } = await ended(failing);
+  const { state, error } = await client.labResult(failing);
   assert.equal(state, "failed");
   assert.ok(error.path && error.found && error.allowed);
 
@@ -336,13 +330,14 @@ test("the five jobs of the lab, cancelled, failed, waiting and exported, tell of
   const waiting = [];
   for (let i = 0; i < 3; ++i) {
     waiting.push((await client.request("lab.chart", long)).job);
-    if (i === 0) await inTime(client, "lab.progress", ({ job, state }) => job === waiting[0] && state === "running");
+    if (i === 0)
+      await client.notification("lab.progress", ({ job, state }) => job === waiting[0] && state === "running");
   }
   assert.equal((await client.refusal("lab.chart", long)).code, -32002);
   assert.equal((await client.request("lab.jobs")).jobs.length, jobs.length + 2 + waiting.length);
   assert.equal((await client.refusal("lab.export", { job: waiting[2], format: "csv" })).code, -32602);
   for (const job of waiting) assert.equal((await client.request("lab.cancel", { job })).cancelled, true);
-  for (const job of waiting) assert.equal((await ended(job)).state, "cancelled");
+  for (const job of waiting) assert.equal((await client.labResult(job)).state, "cancelled");
   assert.equal((await client.request("lab.cancel", { job: waiting[0] })).cancelled, false);
   await leave(client);
 });
@@ -350,7 +345,7 @@ test("the five jobs of the lab, cancelled, failed, waiting and exported, tell of
 test("the method auto tells what it measures, what it chose, and why where it cannot, as it says", async () => {
   const automatic = { ...strip, solver: { method: "auto", tolerance: 0.05 } };
   const client = await enter(automatic);
-  const auto = (state) => inTime(client, "sim.status", ({ solver }) => solver.auto?.state === state);
+  const auto = (state) => client.notification("sim.status", ({ solver }) => solver.auto?.state === state, labPatience);
   await auto("measuring");
   await auto("chosen");
   await leave(client);
@@ -395,7 +390,7 @@ test("a request that the server cannot serve is refused as the document says", a
   process.env.CLOTHLAB_FAULT = "change-fails::1";
   const poor = await Server.start().finally(() => delete process.env.CLOTHLAB_FAULT);
   const client = await enter(null, { session: "main", at: poor });
-  await inTime(client, "sim.status", ({ step }) => step > 1);
+  await client.notification("sim.status", ({ step }) => step > 1);
   assert.equal((await client.refusal("scene.patch", { patch: { gravity: [0, -1, 0] } })).code, -32603);
   await client.close();
   await poor.stop();

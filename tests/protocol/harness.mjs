@@ -15,6 +15,8 @@ if (!program) throw new Error("CLOTHLAB must name the program to test");
 
 /// [ms], generous: a busy machine under a sanitizer must not fail a test.
 export const patience = 120_000;
+/// The same for what the lab tells: it works at the lowest priority, and where others are busy it takes long.
+export const labPatience = 8 * patience;
 
 export const sleep = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
 
@@ -230,20 +232,18 @@ export class Client {
   }
 
   /// The parameters of a notification that has arrived or will arrive.
-  async notification(method, predicate = () => true) {
+  async notification(method, predicate = () => true, wait = method.startsWith("lab.") ? labPatience : patience) {
     const message = await this.until(
       () => this.messages,
       (m) => m.method === method && predicate(m.params),
       method,
+      wait,
     );
     return message.params;
   }
-  /// What a job of the lab comes to: the parameters of its last lab.result. The lab works at the lowest priority: where
-  /// others are busy it takes long.
-  async labResult(job) {
-    const last = ({ method, params }) => method === "lab.result" && params.job === job && params.state !== "running";
-    const message = await this.until(() => this.messages, last, `the result of the lab's job ${job}`, 8 * patience);
-    return message.params;
+  /// What a job of the lab comes to: the parameters of its last lab.result.
+  labResult(job) {
+    return this.notification("lab.result", (result) => result.job === job && result.state !== "running");
   }
   /// Like `notification`, but only one that arrives from now on.
   nextNotification(method, predicate = () => true, patience = undefined) {
